@@ -156,10 +156,8 @@ class Cage(TomlFile):
         length of each bridle; the slack of the frame ropes, with what they share. Drawn values
         stay in the file's bounds, the pretension above a tenth of the file's.
 
-        Raises
-        ------
-        InputError
-            A file that states none of ``pretension_sd_n``, ``length_sd_m``, ``rope_slack_sd_m``.
+        Raises InputError: a file that states none of ``pretension_sd_n``, ``length_sd_m``,
+        ``rope_slack_sd_m``.
         """
         bridles, frame = self.bridles, self.frame
         spread = (bridles.pretension_sd, bridles.length_sd, frame.rope_slack_sd)

@@ -34,9 +34,7 @@ class MooringLines:
         Range of which a single cycle would use up the life, breaking load · K^(1/m); NaN where it
         is not known [N].
 
-    References
-    ----------
-    API RP 2SK (2005), fatigue analysis: T–N curves.
+    Source: API RP 2SK (2005), fatigue analysis: T–N curves.
     """
 
     names: tuple[str, ...]

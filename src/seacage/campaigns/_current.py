@@ -46,9 +46,7 @@ def generated_current(
     every_s
         Time between values [s].
 
-    References
-    ----------
-    Periods of the constituents: Doodson (1921).
+    Source: periods of the constituents: Doodson (1921).
     """
     steps = int(days * 24.0 * _HOUR / every_s)
     if steps < 1:

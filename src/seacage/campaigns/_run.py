@@ -94,11 +94,8 @@ def run_campaign(
     progress
         Called as ("campaign", done, total) in cases, first with what was there already.
 
-    Raises
-    ------
-    InputError
-        ``out`` holds another campaign, moorings are to be drawn of what states no uncertainty, or
-        a line has parted that the mooring has not.
+    Raises InputError: ``out`` holds another campaign, moorings are to be drawn of what states no
+    uncertainty, or a line has parted that the mooring has not.
     """
     simulator = Simulator(
         method=method,

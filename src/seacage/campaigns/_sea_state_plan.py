@@ -118,9 +118,7 @@ class Plan:
         name
             Of the plan.
 
-        References
-        ----------
-        Sobol (1967); scrambling after Owen (1998), as ``scipy.stats.qmc.Sobol`` does it.
+        Source: Sobol (1967); scrambling after Owen (1998), as ``scipy.stats.qmc.Sobol`` does it.
         """
         _check_seed(seed)
         if cases < 1:

@@ -51,10 +51,7 @@ class CampaignStatus:
 def campaign_status(out: str | Path) -> CampaignStatus:
     """Progress of the campaign in a folder, whether it is running or was stopped.
 
-    Raises
-    ------
-    RecordError
-        There is no campaign.
+    Raises RecordError: there is no campaign.
     """
     store = Path(out)
     attributes, result, block = campaign_results(store)

@@ -85,10 +85,7 @@ def waves_at_site(
     most
         Highest Hs at the site [m].
 
-    Raises
-    ------
-    InputError
-        A record without waves, or one that has those days in no year.
+    Raises InputError: a record without waves, or one that has those days in no year.
     """
     kept = _usable(record)
     time = record.time[kept]

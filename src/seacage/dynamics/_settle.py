@@ -135,11 +135,8 @@ def settle(
     workers
         Threads to share the cases among.
 
-    Raises
-    ------
-    InputError
-        Waves without ``mean_waves``, no sea at all, no start, a line that the mooring has not,
-        or a cage that cannot float or has not what the mooring needs.
+    Raises InputError: waves without ``mean_waves``, no sea at all, no start, a line that the
+    mooring has not, or a cage that cannot float or has not what the mooring needs.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
@@ -191,10 +188,7 @@ def rest_shape(
 ) -> Float[np.ndarray, "node 3"]:
     """The net's shape in still water, a structure's design [m]; do not write into it.
 
-    Raises
-    ------
-    InputError
-        A cage that has no rest: its parts cannot hang together.
+    Raises InputError: a cage that has no rest: its parts cannot hang together.
     """
     if isinstance(cage, Structure):
         return cage.design_position

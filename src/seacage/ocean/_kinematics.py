@@ -29,9 +29,7 @@ def wavenumber(angular_frequency: PerN, *, depth: float) -> PerN:
     depth
         Of the water [m].
 
-    References
-    ----------
-    Start by Eckart (1952), within 5 %; then Newton, which doubles the digits each time.
+    Source: start by Eckart (1952), within 5 %; then Newton, which doubles the digits each time.
     """
     deep = angular_frequency**2 * depth / GRAVITY
     kh = np.where(deep > 0.0, deep / np.sqrt(np.tanh(np.where(deep > 0.0, deep, 1.0))), 0.0)
@@ -161,9 +159,7 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
     depth
         Of the water [m].
 
-    References
-    ----------
-    Miche (1944): a wave breaks above H = 0.142 L tanh(k depth).
+    Source: Miche (1944): a wave breaks above H = 0.142 L tanh(k depth).
     """
     for name, value, unit in (
         ("height", height, "m"),
@@ -236,9 +232,7 @@ def water_motion(
     acceleration
         [m/s2].
 
-    References
-    ----------
-    Airy (1845), finite depth; Wheeler (1970).
+    Source: Airy (1845), finite depth; Wheeler (1970).
     """
     angle = _angle(waves, position[..., :2], time)
     cosine, sine = np.cos(angle), np.sin(angle)
@@ -272,9 +266,7 @@ def pressure_head(waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]) ->
     time
         Broadcast against the positions [s].
 
-    References
-    ----------
-    Airy (1845), finite depth.
+    Source: Airy (1845), finite depth.
     """
     k, depth = waves.wavenumber, waves.depth
     height = np.clip(position[..., 2], -depth, 0.0)[..., None]

@@ -15,10 +15,8 @@ MAX_CURRENT_SPEED = 3.0
 def steepness_limit(tp: float) -> float:
     """Largest 2 pi Hs / (g Tp^2) that an irregular sea of this peak period sustains.
 
-    References
-    ----------
-    DNV-RP-C205 (2010), steepness criteria: 1/15 for Tp <= 8 s, 1/25 for Tp >= 15 s,
-    linear between.
+    Source: DNV-RP-C205 (2010), steepness criteria: 1/15 for Tp <= 8 s, 1/25 for Tp >= 15 s, linear
+    between.
     """
     return float(np.interp(tp, [8.0, 15.0], [1.0 / 15.0, 1.0 / 25.0]))
 

@@ -11,9 +11,7 @@ from seacage.ocean._sea_state import SeaState
 def peak_enhancement(hs: float, tp: float) -> float:
     """Gamma of the JONSWAP spectrum: 1 (Pierson-Moskowitz) to 5 (a young, steep sea) [-].
 
-    References
-    ----------
-    DNV-RP-C205 (2010), 3.5.5: by Tp / sqrt(Hs), with Hs in m and Tp in s.
+    Source: DNV-RP-C205 (2010), 3.5.5: by Tp / sqrt(Hs), with Hs in m and Tp in s.
     """
     ratio = tp / math.sqrt(hs)
     if ratio <= 3.6:
@@ -41,9 +39,7 @@ def spectrum(
     density
         [m2 s].
 
-    References
-    ----------
-    Hasselmann et al. (1973); as given in DNV-RP-C205 (2010), 3.5.5.
+    Source: Hasselmann et al. (1973); as given in DNV-RP-C205 (2010), 3.5.5.
     """
     if sea.hs == 0.0:
         return np.zeros_like(angular_frequency)

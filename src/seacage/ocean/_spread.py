@@ -81,9 +81,7 @@ def spread_angle(share: Float[np.ndarray, " n"], *, spreading: float) -> Float[n
     ``share``: from 0 to 1; 0.5 is straight ahead [-]. ``spreading``: s of cos^2s of half the angle:
     about 10 for wind sea at its peak, more for swell [-].
 
-    References
-    ----------
-    Longuet-Higgins, Cartwright and Smith (1963); values of s: Mitsuyasu et al. (1975).
+    Source: Longuet-Higgins, Cartwright and Smith (1963); values of s: Mitsuyasu et al. (1975).
     """
     from scipy.special import betaincinv
 
@@ -108,9 +106,7 @@ def on_current(waves: Waves, current: Float[np.ndarray, "2"]) -> Waves:
 
     ``waves``: with frequencies as in still water. ``current``: at the surface, (east, north) [m/s].
 
-    References
-    ----------
-    omega = sigma + k . U, as in Peregrine (1976).
+    Source: omega = sigma + k . U, as in Peregrine (1976).
     """
     doppler = waves.wavenumber * (waves.direction @ current)
     return replace(waves, angular_frequency=waves.angular_frequency + doppler)

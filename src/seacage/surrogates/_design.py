@@ -29,9 +29,7 @@ def spread_design(
     chosen
         Rows, ascending.
 
-    References
-    ----------
-    Farthest-point design: Johnson, Moore & Ylvisaker (1990), maximin distance.
+    Source: farthest-point design: Johnson, Moore & Ylvisaker (1990), maximin distance.
     """
     if count < 1:
         raise InputError(f"spread_design: count = {count} chooses nothing. Give 1 or more.")

@@ -42,9 +42,7 @@ def crps(truth: PerN, mean: PerN, std: PerN) -> float:
     truth, mean, std
         What happened, and what was predicted.
 
-    References
-    ----------
-    Gneiting & Raftery (2007), eq. (21).
+    Source: Gneiting & Raftery (2007), eq. (21).
     """
     from scipy.special import ndtr
 
@@ -83,9 +81,7 @@ def mnll(truth: PerN, mean: PerN, std: PerN) -> float:
     truth, mean, std
         What happened, and what was predicted; the standard deviation above 0.
 
-    References
-    ----------
-    Rasmussen & Williams (2006), eq. (2.34).
+    Source: Rasmussen & Williams (2006), eq. (2.34).
     """
     error = _error(truth, mean)
     _check_std(error, std, smallest=np.finfo(float).tiny)
@@ -100,9 +96,7 @@ def skill(score: float, reference: float) -> float:
     score, reference
         Of the model and of what it is held against; both 0 at best.
 
-    References
-    ----------
-    Murphy (1988), eq. (4).
+    Source: Murphy (1988), eq. (4).
     """
     if not reference > 0.0:
         raise InputError(
@@ -167,9 +161,7 @@ def block_bootstrap(
     mean, lower, upper
         In the unit of the difference.
 
-    References
-    ----------
-    Politis & Romano (1992), circular block resampling.
+    Source: Politis & Romano (1992), circular block resampling.
     """
     _error(difference, np.zeros_like(difference))
     _check_level(level)

@@ -164,10 +164,7 @@ class Twin:
         line
             Such as "bridle-8"; None for every line that was learned, one at a time.
 
-        Raises
-        ------
-        InputError
-            The twin has not learned it.
+        Raises InputError: the twin has not learned it.
         """
         if self.models.parted is None or self.models.loads is None:
             raise InputError(NO_PARTED_LINES)

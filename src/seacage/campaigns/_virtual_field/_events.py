@@ -51,10 +51,8 @@ class Event:
     until
         When what is stuck or silent speaks again; None for never.
 
-    Raises
-    ------
-    InputError
-        An unknown kind, a time without its zone, a size or an end that it cannot have.
+    Raises InputError: an unknown kind, a time without its zone, a size or an end that it cannot
+    have.
     """
 
     kind: str
@@ -112,10 +110,7 @@ class Event:
         ``drift depth-2 2020-02-01T12:00Z m_per_day=0.2``,
         ``silent buoy-1 2020-02-01T12:00Z until=2020-02-02T00:00Z``.
 
-        Raises
-        ------
-        InputError
-            Other words, or what ``Event`` refuses.
+        Raises InputError: other words, or what ``Event`` refuses.
         """
         words = text.split()
         if len(words) < 3 or not all("=" in word for word in words[3:]):
@@ -129,10 +124,7 @@ class Event:
     def damage(self, cage: Cage) -> Damage | None:
         """Damage to the cage; None for an event of a sensor or of the buoy.
 
-        Raises
-        ------
-        InputError
-            A bridle or a place that the cage has not.
+        Raises InputError: a bridle or a place that the cage has not.
         """
         if self.kind == "bridle-cut":
             _check_target(self, cage.bridle_names)
@@ -207,10 +199,7 @@ def read_events(path: str | Path) -> tuple[Event, ...]:
         at = 2020-02-03T00:00:00Z
         m_per_day = 0.2
 
-    Raises
-    ------
-    InputError
-        No TOML, a key that is missing or unknown, a value that ``Event`` refuses.
+    Raises InputError: no TOML, a key that is missing or unknown, a value that ``Event`` refuses.
     """
     table: Mapping[str, object] = parse_toml(read_text(path), str(path))
     entries = table.get("event")

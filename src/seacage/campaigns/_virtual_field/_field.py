@@ -117,11 +117,8 @@ def virtual_field(
     progress
         Called as ("virtual field", done, total), in simulated hours or in equilibria.
 
-    Raises
-    ------
-    InputError
-        A record too short, events that cannot be, ``kept`` of another field; waves, events or
-        a timetable for a settled field.
+    Raises InputError: a record too short, events that cannot be, ``kept`` of another field; waves,
+    events or a timetable for a settled field.
     """
     if method == "simulate":
         request = FieldRequest(

@@ -61,10 +61,7 @@ class Timetable:
     def readings(self, every: float) -> tuple[int, int]:
         """Readings of a stretch and of a mean.
 
-        Raises
-        ------
-        InputError
-            A mean that is no whole number of readings.
+        Raises InputError: a mean that is no whole number of readings.
         """
         of_mean = count_times(self.mean, every, "Timetable: mean")
         return of_mean * count_times(self.stretch, self.mean, "Timetable: stretch"), of_mean

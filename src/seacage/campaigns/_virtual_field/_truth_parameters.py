@@ -197,10 +197,7 @@ class TruthParameters:
     def read(cls, path: str | Path | None = None) -> Self:
         """Hidden parameters from a TOML file; None for those of cage ``ace``.
 
-        Raises
-        ------
-        InputError
-            No TOML, or a key that is unknown, missing or no finite number.
+        Raises InputError: no TOML, or a key that is unknown, missing or no finite number.
         """
         own = resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml"
         text = own.read_text("utf-8") if path is None else read_text(path)

@@ -43,15 +43,10 @@ def catenary(
     force_a, force_b
         On each end (horizontal, vertical), x towards B, z up [N].
 
-    Raises
-    ------
-    InputError
-        Spans, lengths or properties that no line can have, and a line so long that it hangs
-        plumb onto the sea bed.
+    Raises InputError: spans, lengths or properties that no line can have, and a line so long that
+    it hangs plumb onto the sea bed.
 
-    References
-    ----------
-    Irvine (1981), elastic catenary; Jonkman (2007), sea-bed contact with friction.
+    Source: Irvine (1981), elastic catenary; Jonkman (2007), sea-bed contact with friction.
     """
     line = _Line(
         x_span=x_span,

@@ -77,9 +77,7 @@ def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
     cd, cl
         On the panel's whole area [-]; lift is along (u × n) × u.
 
-    References
-    ----------
-    Aarsnes, Rudi & Løland (1990).
+    Source: Aarsnes, Rudi & Løland (1990).
     """
     slope, lift = _aarsnes_terms(solidity)
     return 0.04 + slope * cos_theta, lift * _sin_twice(cos_theta)
@@ -88,9 +86,7 @@ def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
 def loland(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
     """Drag and lift coefficients after Løland; arguments as in ``aarsnes``.
 
-    References
-    ----------
-    Løland (1991).
+    Source: Løland (1991).
     """
     slope, lift = _loland_terms(solidity)
     return 0.04 + slope * cos_theta, lift * _sin_twice(cos_theta)
@@ -114,9 +110,7 @@ def kristiansen_faltinsen(
     cd, cl
         On the panel's whole area [-]; cd is never negative.
 
-    References
-    ----------
-    Kristiansen & Faltinsen (2012), with the first two terms of their Fourier series.
+    Source: Kristiansen & Faltinsen (2012), with the first two terms of their Fourier series.
     """
     cd0, cl0 = facing(solidity, cylinder_drag(reynolds))
     c = cos_theta

@@ -52,10 +52,8 @@ def extremes(
     has_waves
         Without waves the largest tension is the mean.
 
-    References
-    ----------
-    Naess and Moan (2013), Stochastic Dynamics of Marine Structures, on fitted peaks; plotting
-    positions after Benard and Bos-Levenbach (1953).
+    Source: Naess and Moan (2013), Stochastic Dynamics of Marine Structures, on fitted peaks;
+    plotting positions after Benard and Bos-Levenbach (1953).
     """
     if not has_waves:
         mean = np.asarray(np.mean(np.concatenate(tension), axis=0, dtype=np.float64))

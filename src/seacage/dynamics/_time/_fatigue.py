@@ -28,9 +28,7 @@ def damage_equivalent_load(
     every
         Between samples [s].
 
-    References
-    ----------
-    Rainflow: ASTM E1049-85 (2011), 5.4.4.
+    Source: rainflow: ASTM E1049-85 (2011), 5.4.4.
     """
     duration = every * sum(map(len, tension))
     load = np.full(len(slope), np.nan)

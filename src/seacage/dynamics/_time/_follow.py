@@ -86,11 +86,8 @@ def follow(
     progress
         Called as ("follow", done, total), in simulated seconds of all stretches.
 
-    Raises
-    ------
-    InputError
-        Too many stretches or none, times that are no whole number of steps, damage to what
-        the cage has not.
+    Raises InputError: too many stretches or none, times that are no whole number of steps, damage
+    to what the cage has not.
     """
     course = _course(duration, every, spin_up, shape_every, time_step)
     _check(weathers, starts)

@@ -142,13 +142,10 @@ def simulate(
     progress
         Called as ("simulate", done, total), in simulated seconds of all cases.
 
-    Raises
-    ------
-    InputError
-        No sea at all, times that make no sense, an unknown law, mooring or line, a time step too
-        long for the stiffest line, waves that are not finite, too high or of water of another
-        depth, drag of twines for a law without, or a cage that cannot float or is deeper than
-        its site.
+    Raises InputError: no sea at all, times that make no sense, an unknown law, mooring or line, a
+    time step too long for the stiffest line, waves that are not finite, too high or of water of
+    another depth, drag of twines for a law without, or a cage that cannot float or is deeper than
+    its site.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     laws: tuple[MovingLaw, ...] = law_of_each(law, len(seas))

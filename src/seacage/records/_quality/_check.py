@@ -85,9 +85,7 @@ def check_sample(
     sample
         With its flags, and with a remark for each value that is not good.
 
-    References
-    ----------
-    QARTOD manuals of IOOS: in-situ currents, surface waves, water level.
+    Source: QARTOD manuals of IOOS: in-situ currents, surface waves, water level.
     """
     time = microseconds(sample.t)
     anchors = dict(state.anchors)

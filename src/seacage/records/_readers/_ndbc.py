@@ -1,9 +1,8 @@
 """Text files of NDBC: blanks between cells, times in five columns, units in a second header.
 
-References
-----------
-NDBC, "Measurement descriptions and units": standard meteorological data (WVHT, DPD, MWD) and
-ocean current data (DEP, DIR, SPD). Waves come from MWD, currents flow toward DIR; times are UTC.
+Source: NDBC, "Measurement descriptions and units": standard meteorological data (WVHT, DPD, MWD)
+and ocean current data (DEP, DIR, SPD). Waves come from MWD, currents flow toward DIR; times are
+UTC.
 """
 
 import re

@@ -36,10 +36,8 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     factor
         Times the standard deviation.
 
-    References
-    ----------
-    Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the mean of
-    a normal sample of unknown spread.
+    Source: Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the
+    mean of a normal sample of unknown spread.
     """
     from scipy.special import ndtri, stdtrit
 
@@ -70,9 +68,7 @@ def variance_components(
     Least squares on squared errors, each weighed by the variance it is expected to have, again
     and again as in a generalised linear model of gamma errors.
 
-    References
-    ----------
-    McCullagh & Nelder (1989), chapter 8; Lawson & Hanson (1974) for the signs.
+    Source: McCullagh & Nelder (1989), chapter 8; Lawson & Hanson (1974) for the signs.
     """
     from scipy.optimize import nnls
 
@@ -104,10 +100,8 @@ class AdaptiveConformal:
     floor, cap
         Smallest and largest factor [-], so that a broken sensor cannot blow the intervals up.
 
-    References
-    ----------
-    Gibbs & Candès (2021), "Adaptive conformal inference under distribution shift"; stepping the
-    quantile itself: Angelopoulos, Candès & Tibshirani (2023), "Conformal PID control".
+    Source: Gibbs & Candès (2021), "Adaptive conformal inference under distribution shift"; stepping
+    the quantile itself: Angelopoulos, Candès & Tibshirani (2023), "Conformal PID control".
     """
 
     level: float = 0.95

@@ -39,9 +39,7 @@ class ResidualModel:
     rounds
         Of reweighting and searching, at most.
 
-    References
-    ----------
-    Student-t as a mixture of Gaussians, hence the weights: Lange, Little & Taylor (1989).
+    Source: Student-t as a mixture of Gaussians, hence the weights: Lange, Little & Taylor (1989).
     """
 
     memory_s: float = 3600.0
@@ -125,9 +123,8 @@ class FittedResidual:
         span_s
             Without gaps [s].
 
-        References
-        ----------
-        Variance of a time mean over that of a value: the double integral of the correlation.
+        Source: variance of a time mean over that of a value: the double integral of the
+        correlation.
         """
         ratio = span_s / self.memory_s
         if ratio < 1e-6:

@@ -67,9 +67,7 @@ class GCN:
         the held-out cases that end the training, and the largest step of Adam; None means
         what suits the kind.
 
-    References
-    ----------
-    Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Graph convolutional networks
+    Source: Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Graph convolutional networks
     for net cage deformation"; Kipf & Welling (2017).
     """
 

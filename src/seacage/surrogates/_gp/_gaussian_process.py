@@ -57,9 +57,7 @@ class GaussianProcess:
         Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
         cases; fewer get four times as many.
 
-    References
-    ----------
-    Rasmussen & Williams (2006), chapters 2 and 5.
+    Source: Rasmussen & Williams (2006), chapters 2 and 5.
     """
 
     kernel: KernelName = "squared-exponential"
@@ -245,9 +243,7 @@ class FittedGaussianProcess:
 
         In closed form; the hyperparameters stay those learned from all cases.
 
-        References
-        ----------
-        Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
+        Source: Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
         return self._from_residuals([member.leave_one_out() for member in self.members])
 

@@ -325,10 +325,8 @@ class FittedLoadGP:
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The surrogate that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
+        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
+        finite.
         """
         names = setting_list(settings, "statistics", str)
         processes = processes_from_arrays(settings, "processes", arrays, later=True)

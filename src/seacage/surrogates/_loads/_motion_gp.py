@@ -115,10 +115,8 @@ class FittedMotionGP:
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The surrogate that ``to_arrays`` described.
 
-        Raises
-        ------
-        ModelError
-            A setting or an array is missing, of another kind or shape, or not finite.
+        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
+        finite.
         """
         (process,) = processes_from_arrays(settings, "processes", arrays, later=True)
         centre = array(arrays, "centre", None)

@@ -144,9 +144,7 @@ class NARGP(AbstractMultifidelity):
     restarts
         Of each level, as for ``GaussianProcess``.
 
-    References
-    ----------
-    Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
+    Source: Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
     multi-fidelity modelling", Proc. R. Soc. A 473:20160751.
     """
 
@@ -169,9 +167,7 @@ class AR1(AbstractMultifidelity):
     noise, ensemble, restarts
         As for ``NARGP``.
 
-    References
-    ----------
-    Kennedy & O'Hagan (2000), "Predicting the output from a complex computer code when fast
+    Sources: Kennedy & O'Hagan (2000), "Predicting the output from a complex computer code when fast
     approximations are available", Biometrika 87:1-13; Le Gratiet & Garnier (2014), Int. J.
     Uncertainty Quantification 4:365-386, for the recursion.
     """

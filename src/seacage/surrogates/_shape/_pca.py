@@ -170,9 +170,7 @@ class PcaGP:
     kernel, restarts
         As for ``GaussianProcess``.
 
-    References
-    ----------
-    Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Net cage displacement data
+    Source: Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Net cage displacement data
     dimension reduction using PCA".
     """
 

@@ -41,9 +41,7 @@ class Limit:
     severity
         1 to 1000, the larger the worse.
 
-    References
-    ----------
-    OPC UA Part 9, Alarms and Conditions: severity, on- and off-delay, re-alarm time.
+    Source: OPC UA Part 9, Alarms and Conditions: severity, on- and off-delay, re-alarm time.
     """
 
     raise_at: float
@@ -108,9 +106,8 @@ class Alarm:
     Active and acknowledged are independent: an alarm that has cleared still waits to be
     acknowledged. A number that is not known neither raises nor clears.
 
-    References
-    ----------
-    OPC UA Part 9, Alarms and Conditions: AcknowledgeableConditionType, ShelvedStateMachineType.
+    Source: OPC UA Part 9, Alarms and Conditions: AcknowledgeableConditionType,
+    ShelvedStateMachineType.
     """
 
     name: str  # its kind and its source, e.g. ``load.bridle-3``
