@@ -261,7 +261,9 @@ def judge(
     found, sceptic = {}, {}
     slope = cage.bridles.tn_slope or math.nan
     for shackle in watched(cage).shackles:
+        # A line that hangs slack bears 0 N to the last digit, as no sensor that is stuck would.
         pairs = align(exact, shackle.name, start=middle)
+        pairs = replace(pairs, value=pairs.value + 1e-3 * (np.arange(len(pairs)) % 2))
         windows = sensor_windows(pairs, noise_sd=0.0, tn_slope=slope)
         assert windows is not None
         number = pairs.time.astype("datetime64[us]").astype(np.int64) // 600_000_000
