@@ -2,7 +2,8 @@
 
 The twin learns a formula here, as what it has learned does not change how long it takes. Then
 what level 2 costs: each sensor's NARGP after another, all of them together, and the triangular
-systems in it alone, which is what no arrangement of the calls can save.
+systems in it alone, which is what no arrangement of the calls can save. Last, the loads of lines in
+waves, in all images of 480 made-up cases: the means, and with their standard deviations.
 """
 
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from _timing import ONCE, print_times, seconds
 from seacage.cage import Cage
 from seacage.dynamics import settle
 from seacage.ocean import SeaState
-from seacage.surrogates import Prediction
+from seacage.surrogates import LoadCases, LoadGP, Prediction, Symmetry, sea_features
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas
 from seacage.twin import Metocean, Models, Training, replay, train
 
@@ -60,6 +61,35 @@ def level_two(models: Models) -> dict[str, float]:
     }
 
 
+def line_loads(count: int) -> dict[str, float]:
+    """What the loads of four lines take for one sea state, learned from a formula [s]."""
+    places = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    random = np.random.default_rng(1)
+    angle, hs = random.uniform(0.0, 2.0 * np.pi, (count, 2, 1)), random.uniform(0.2, 3.0, count)
+    current, wave = np.concatenate([np.cos(angle), np.sin(angle)], axis=2).swapaxes(0, 1)
+    period = 5.0 * np.sqrt(hs) * random.uniform(0.8, 2.5, count)
+    x = sea_features(
+        random.uniform(0.1, 1.0, (count, 1)) * current, hs=hs, tp=period, wave_direction=wave
+    )
+    mean = 1e4 + 5e3 * x[:, 1:3] @ places[:, :2].T
+    std = 1e3 * hs[:, None] * np.exp(0.03 * random.standard_normal((count, 4)))
+    cases = LoadCases(
+        mean=mean,
+        std=std,
+        most_probable=mean + 3.0 * std,
+        expected=mean + 3.2 * std,
+        largest=mean + 3.0 * std,
+        damage_equivalent=2.0 * std,
+    )
+    symmetry = Symmetry.of(places, fold=4, mirror=0.0)
+    model = LoadGP(symmetry=symmetry, restarts=0).fit(x, cases, duration=600.0)
+    one = x[:1]
+    return {
+        "means": each(lambda: model.predict(one, spread=False)),
+        "with standard deviations": each(lambda: model.predict(one)),
+    }
+
+
 print_times(
     "answer, per sea state",
     {
@@ -71,3 +101,4 @@ print_times(
     },
 )
 print_times("level 2 of eight sensors, per sea state", level_two(twin.models))
+print_times("loads of lines, per sea state", line_loads(24 if ONCE else 480))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -53,10 +53,6 @@ class Cholesky:
         half = _trtrs()(self.lower, cross.T, lower=True)[0]
         return np.einsum("nr,nr->r", half, half)[:, None]
 
-    def precision(self) -> Float[np.ndarray, "n 1"]:
-        """Diagonal of the inverse."""
-        return np.diag(self.inverse())[:, None]
-
     def inverse(self) -> Float[np.ndarray, "n n"]:
         """Of the covariance with noise."""
         return inverse(self.lower)
@@ -87,14 +83,10 @@ class Later:
     """A factor of noise alike for all outputs, made when anything is first asked of it."""
 
     def __init__(self, make: Callable[[], Any]) -> None:
-        self._make = make
-
-    @cached_property
-    def _factor(self) -> Any:
-        return self._make()
+        self._make = cache(make)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._factor, name)
+        return getattr(self._make(), name)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -158,9 +150,6 @@ class Spectrum:
                 "A sum of outputs of unlike noise can predict, but it was not learned as one "
                 "output. Ask the whole model instead."
             )
-
-
-Factor = Cholesky | Spectrum | Later
 
 
 def _lower(

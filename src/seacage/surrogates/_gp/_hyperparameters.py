@@ -137,7 +137,7 @@ class Evidence(Rows):
         factor = Cholesky.of(covariance, each)
         residual = each[:, None] * factor.solve(self.y)
         outputs = self.y.shape[1]
-        unsure = outputs * (each - each**2 * factor.precision()[:, 0])
+        unsure = outputs * (each - each**2 * np.diag(factor.inverse()))
         square = np.sum(residual**2, axis=1) + unsure
         return replace(self, noise_factor=noise_factor_of(square, scale=scale, outputs=outputs))
 

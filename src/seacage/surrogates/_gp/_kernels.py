@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.conventions import ModelError
 
@@ -119,6 +119,10 @@ class AbstractKernel(ABC):
     ) -> Evaluation:
         """Variance of each row."""
 
+    def quotient(self, x: NFeature) -> Int[np.ndarray, "image image"] | None:  # noqa: ARG002
+        """The group that the rows are images under, as for ``Orbits``; None where there is none."""
+        return None
+
     def evaluate(self, log_parameters: PerParameter, x: RowFeature, z: NFeature) -> Evaluation:
         """Covariance between the rows of two sets of inputs."""
         return self.at(log_parameters, z)(x)
@@ -127,11 +131,16 @@ class AbstractKernel(ABC):
         self, log_parameters: PerParameter, x: RowFeature, z: NFeature
     ) -> Float[np.ndarray, "row n"]:
         """The value of ``evaluate`` alone, which keeps nothing for gradients."""
+        return self.values_at(log_parameters, z)(x)
+
+    def values_at(self, log_parameters: PerParameter, z: NFeature) -> Leaf:
+        """The values of ``at`` alone, which keep nothing for gradients."""
 
         def value(leaf: AbstractKernel, own: np.ndarray) -> Leaf:
-            return lambda x: leaf.evaluate(own, x, z).value
+            covariances = leaf.at(own, z)
+            return lambda x: covariances(x).value
 
-        return self.combine(log_parameters, x.shape[-1], value)(x)
+        return self.combine(log_parameters, z.shape[-1], value)
 
     def combine(
         self,

@@ -1,13 +1,13 @@
 """Posterior of a Gaussian process: condition on points, predict, differentiate, update."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError, ModelError
-from seacage.surrogates._gp._factor import Cholesky, Factor, Later, Spectrum
+from seacage.surrogates._gp._factor import Cholesky, Later, Spectrum
 from seacage.surrogates._gp._kernels import AbstractKernel
 from seacage.surrogates._gp._noise import (
     AbstractNoise,
@@ -15,6 +15,7 @@ from seacage.surrogates._gp._noise import (
     StudentNoise,
     noise_factor_of_new,
 )
+from seacage.surrogates._gp._orbits import Orbits
 from seacage.surrogates._prediction import Moments
 
 NFeature = Float[np.ndarray, "n feature"]
@@ -25,6 +26,7 @@ PerNew = Float[np.ndarray, " new"]
 RowFeature = Float[np.ndarray, "row feature"]
 RowOutput = Float[np.ndarray, "row output"]
 RowShared = Float[np.ndarray, "row shared"]
+Factor = Cholesky | Orbits | Spectrum | Later
 CHUNK = 2**22  # covariances held at once while predicting: 32 MiB whatever the number of rows
 
 
@@ -84,12 +86,16 @@ class Process:
 
     def _factorise(self, x: NFeature, noise_factor: PerN) -> Factor:
         """Of the covariance of points with noise."""
-        covariance = self.kernel.covariance(self.log_parameters, x, x)
         if isinstance(self.noise, NoisePerOutput):
+            covariance = self.kernel.covariance(self.log_parameters, x, x)
             return Spectrum.of(covariance, np.exp(self.log_noise))
-        return Cholesky.of(
-            covariance, self.noise.with_pullback(self.log_noise, x)[0] * noise_factor
-        )
+        noise = self.noise.with_pullback(self.log_noise, x)[0] * noise_factor
+        quotient = self.kernel.quotient(x)
+        if quotient is None or np.ptp(noise) > 0.0:
+            return Cholesky.of(self.kernel.covariance(self.log_parameters, x, x), noise)
+        first = x[: len(x) // len(quotient)]
+        covariance = self.kernel.covariance(self.log_parameters, first, x)
+        return Orbits.of(covariance, float(noise[0]), quotient)
 
     def _posterior(
         self, x: NFeature, noise_factor: PerN, weights: NOutput, factor: Factor
@@ -116,6 +122,11 @@ class Posterior(Process):
     # Inverse covariance times outputs, so that the mean is one product
     weights: NOutput
     factor: Factor  # of the covariance with noise
+    # Covariance of rows with the points: a function, as what depends on the points is made once
+    cross: Callable[[RowFeature], Float[np.ndarray, "row n"]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "cross", self.kernel.values_at(self.log_parameters, self.x))
 
     def noise_at(self, x: RowFeature) -> RowOutput:
         """Variance of the noise of a new measurement; one column stands for all outputs."""
@@ -149,10 +160,6 @@ class Posterior(Process):
         variance = np.maximum(prior[:, None] - self.factor.variance_reduction(cross), 0.0)
         return cross @ self.weights, variance
 
-    def cross(self, x: RowFeature) -> Float[np.ndarray, "row n"]:
-        """Covariance of rows with the points."""
-        return self.kernel.covariance(self.log_parameters, x, self.x)
-
     def mean_slope(self, x: RowFeature) -> Float[np.ndarray, "row output feature"]:
         """Jacobian of the mean."""
         cross = self.kernel.evaluate(self.log_parameters, x, self.x)
@@ -176,7 +183,10 @@ class Posterior(Process):
 
         Source: Rasmussen & Williams (2006), eqs. (5.10)-(5.12).
         """
-        precision = self.factor.precision()
+        if isinstance(self.factor, Spectrum):
+            precision = self.factor.precision()
+        else:
+            precision = np.diag(self.factor.inverse())[:, None]
         return self.weights / precision, 1.0 / precision
 
     def leave_groups_out(self, group: PerN) -> tuple[NOutput, Float[np.ndarray, "n 1"]]:
@@ -245,7 +255,7 @@ class Posterior(Process):
     ) -> "Posterior":
         """With one output: the sum of the outputs times their share."""
         weights = self.weights @ share[:, None]
-        if isinstance(self.factor, Cholesky):
+        if not isinstance(self.factor, Spectrum):
             return replace(self, weights=weights)
         variance = (share * amplitude) ** 2
         variance /= max(float(variance.sum()), np.finfo(float).tiny)

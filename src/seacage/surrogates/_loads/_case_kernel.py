@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Float, Int
 
 from seacage.surrogates._gp import (
     AbstractKernel,
@@ -15,6 +15,8 @@ from seacage.surrogates._gp import (
     register_kernels,
 )
 
+VECTORS = slice(2, 6)  # columns of ``case_inputs`` that turn: current and waves, east and north
+SAME_IMAGE = 1e-8  # of standardised inputs: rounding, far below the effect of any noise
 NEW = -1.0  # number of a case that was not simulated
 
 
@@ -30,6 +32,19 @@ class CaseKernel(Sum):
     @property
     def name(self) -> str:
         return self.saved_as
+
+    def quotient(self, x: Float[np.ndarray, "n 10"]) -> Int[np.ndarray, "image image"] | None:
+        """Of all images of each case, where the rows are those, turned or mirrored."""
+        count = int(np.sum(x[:, -1] == x[0, -1]))
+        if count == 1 or len(x) % count:
+            return None
+        images = x.reshape(count, -1, x.shape[1])
+        vectors = images[..., VECTORS].reshape(count, -1, 2)
+        turn = np.linalg.pinv(vectors[0]) @ vectors  # from the right, each vector a row
+        seen = np.abs(np.einsum("hba,gca->ghbc", turn, turn)[:, :, None] - turn).max(axis=(3, 4))
+        beside = np.abs(np.delete(images - images[0], VECTORS, axis=2)).max()
+        misfit = max(beside, np.abs(vectors[0] @ turn - vectors).max(), seen.min(axis=2).max())
+        return seen.argmin(axis=2) if misfit < SAME_IMAGE else None
 
 
 def _with_case(of_sea: AbstractKernel, saved_as: str) -> CaseKernel:

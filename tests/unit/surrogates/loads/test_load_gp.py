@@ -1,5 +1,7 @@
 """Loads of lines in waves: what is learned of them, and what an interval holds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,6 +16,8 @@ from seacage.surrogates import (
     encode,
     sea_features,
 )
+from seacage.surrogates._gp._orbits import Orbits
+from seacage.surrogates._loads._case_kernel import CaseKernel, case_inputs
 
 PLACES = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """Of four lines, one on each side."""
@@ -213,3 +217,50 @@ def test_many_cases_keep_some_of_their_images(monkeypatch: pytest.MonkeyPatch):
     cases = fitted.processes["std"].cases()
     assert len(cases) == 80
     assert np.unique(cases[:, -1].round(6), return_counts=True)[1].tolist() == [2] * 40
+
+
+def test_all_images_answer_in_blocks_as_the_whole_covariance_does(
+    fitted: FittedLoadGP, monkeypatch: pytest.MonkeyPatch
+):
+    x = draw_seas(300, 23)
+    blocks = fitted.predict(x)
+    assert all(isinstance(one.posterior.factor, Orbits) for one in fitted.processes.values())
+    restored = decode(*encode(fitted))
+    assert isinstance(restored, FittedLoadGP)
+    monkeypatch.setattr(CaseKernel, "quotient", lambda *_: None)
+    whole = restored.predict(x)
+    for name in ("mean", "std", "maximum_3h", "damage_equivalent"):
+        one, other = getattr(blocks, name), getattr(whole, name)
+        # Means without any noise are known to 1e-5 of them, as the jitter lets them be, and that is
+        # a share of each matrix's own diagonal.
+        np.testing.assert_allclose(one.std, other.std, rtol=0.03 if name == "mean" else 1e-4)
+        np.testing.assert_allclose(one.mean, other.mean, rtol=1e-6)
+
+
+def test_without_one_of_its_blocks_the_answer_would_be_another(fitted: FittedLoadGP):
+    process, x = fitted.processes["std"], case_inputs(draw_seas(100, 24))
+    posterior = process.posterior
+    assert isinstance(posterior.factor, Orbits)
+    fewer = replace(posterior, factor=replace(posterior.factor, parts=posterior.factor.parts[1:]))
+    wrong = replace(process, members=(fewer,)).predict(x).std
+    assert np.quantile(wrong / process.predict(x).std, 0.1) > 1.1
+
+
+def test_images_that_are_not_all_there_or_not_quite_images_have_no_blocks(fitted: FittedLoadGP):
+    process = fitted.processes["std"]
+    kernel, x = process.posterior.kernel, process.posterior.x
+    assert kernel.quotient(x) is not None
+    assert kernel.quotient(x[:-1]) is None
+    assert kernel.quotient(x[: 3 * len(x) // 8]) is None  # three quarter turns are no group
+    assert kernel.quotient(x[::8]) is None
+    for column in range(x.shape[1] - 1):
+        moved = x.copy()
+        moved[70, column] += 1e-3
+        assert kernel.quotient(moved) is None
+
+
+def test_one_output_of_the_processes_answers_as_all_do(fitted: FittedLoadGP):
+    process, x = fitted.processes["mean"], case_inputs(draw_seas(4, 25))
+    one, every = process.output(2).predict(x), process.predict(x)
+    np.testing.assert_allclose(one.mean, every.mean[:, 2], rtol=1e-9)
+    np.testing.assert_allclose(one.std, every.std[:, 2], rtol=1e-6)
