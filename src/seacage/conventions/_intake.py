@@ -5,6 +5,7 @@ import math
 import os
 import stat
 import tomllib
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, NoReturn, cast
 
@@ -81,6 +82,12 @@ def parse_json(text: str | bytes, source: str, *, refusal: Refusal = InputError)
     except (ValueError, RecursionError) as error:
         raise refusal(f"{source}: this is no JSON ({_why(error)}). Mend it.") from error
     return value
+
+
+def packaged_table(package: str, name: str) -> dict[str, Any]:
+    """Read a TOML or JSON file that ships with a package, such as ``"seacage.records"``."""
+    text = files(package).joinpath(name).read_text("utf-8")
+    return parse_json(text, name) if name.endswith(".json") else parse_toml(text, name)
 
 
 def _check(path: Path | str, found: os.stat_result, most: int, refusal: Refusal) -> None:

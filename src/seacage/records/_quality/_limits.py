@@ -11,10 +11,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
-from seacage.conventions import parse_toml
+from seacage.conventions import packaged_table
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
@@ -99,8 +98,7 @@ class Season:
 
 @cache
 def _defaults() -> Mapping[str, Any]:
-    file = files("seacage.records") / "limits.toml"
-    return parse_toml(file.read_text(encoding="utf-8"), file.name)
+    return packaged_table("seacage.records", "limits.toml")
 
 
 def _ranges() -> dict[str, Range]:

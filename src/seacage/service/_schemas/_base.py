@@ -1,11 +1,11 @@
 """What the JSON bodies share: names, times, and how strictly a body is read."""
 
-import json
 from datetime import UTC, datetime
-from importlib.resources import files
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
+
+from seacage.conventions import packaged_table
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]  # of a cage, a stream, a sensor
 _YEARS = range(1900, 2200)
@@ -68,7 +68,6 @@ EXAMPLE_T = "2018-01-26T23:08:00Z"
 def with_examples(described: dict[str, Any]) -> dict[str, Any]:
     """Give each body of a description its example, with the nulls that FastAPI would leave out."""
     bodies = described["components"]["schemas"]
-    file = files("seacage.service._schemas") / "examples.json"
-    for name, example in json.loads(file.read_text(encoding="utf-8")).items():
+    for name, example in packaged_table("seacage.service._schemas", "examples.json").items():
         bodies[name]["examples"] = [example]
     return described

@@ -4,11 +4,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any, Self, cast
 
 from seacage.cage import Cage, mooring_lines
-from seacage.conventions import InputError, parse_toml
+from seacage.conventions import InputError, packaged_table
 from seacage.twin._alarms._alarm import Limit
 from seacage.twin._settings import StreamTimeouts
 
@@ -20,8 +19,7 @@ _KEYS = tuple(one.name for one in fields(Limit))
 @cache
 def default_limits() -> Mapping[str, Limit]:
     """Of each kind of alarm."""
-    file = files("seacage.twin._alarms") / "limits.toml"
-    tables = parse_toml(file.read_text(encoding="utf-8"), file.name)
+    tables = packaged_table("seacage.twin._alarms", "limits.toml")
     return {kind: Limit(**table) for kind, table in tables.items()}
 
 

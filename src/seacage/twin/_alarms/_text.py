@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass
 from functools import cache
-from importlib.resources import files
 
-from seacage.conventions import duration_text, parse_toml
+from seacage.conventions import duration_text, packaged_table
 from seacage.twin._alarms._alarm import Alarm
 from seacage.twin._alarms._policy import AlarmPolicy
 
@@ -56,8 +55,7 @@ class _Words:
 
 @cache
 def _words() -> dict[str, _Words]:
-    file = files("seacage.twin._alarms") / "texts.toml"
-    tables = parse_toml(file.read_text(encoding="utf-8"), file.name)
+    tables = packaged_table("seacage.twin._alarms", "texts.toml")
     return {kind: _Words(**table) for kind, table in tables.items()}
 
 
