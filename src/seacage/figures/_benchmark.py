@@ -29,10 +29,11 @@ def error_figure(
     contests: Sequence[Contest],  # one panel each
     *,
     ours: Sequence[int],  # which of the methods are ours, the first of them the one to look at
+    label: str = "Root mean square error",
 ) -> "Figure":
     """Error of each method on each problem: a dot per seed, and a mark at the mean."""
     with _style.style():
-        figure, panels = _grid(methods, contests, "Root mean square error")
+        figure, panels = _grid(methods, contests, label)
         for axes, contest in zip(panels, contests, strict=True):
             for place, error in enumerate(contest.error):
                 colour = _colour(place, ours)

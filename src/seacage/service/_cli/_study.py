@@ -25,6 +25,7 @@ def paper(
     quick: Annotated[bool, typer.Option("--quick/--full")] = True,
     campaign: Annotated[Path | None, typer.Option(exists=True)] = None,
     field: InFolder = None,
+    loads: Annotated[Path | None, typer.Option(exists=True)] = None,
     days: Annotated[float, typer.Option(min=4.0, max=400.0)] = 48.0,
     one_in: Annotated[int, typer.Option(min=1)] = 1,
     networks: bool | None = None,
@@ -45,6 +46,7 @@ def paper(
         quick: 400 equilibria without waves, or the paper's 1,000 half-hours and a field in time.
         campaign: A finished campaign to take; its last 100 cases judge.
         field: A folder of `seacage field virtual` to take, truth included.
+        loads: A finished campaign of `--plan loads` to take, for the loads in waves.
         days: Of a field made with --full.
         one_in: With --full: simulate one hour in so many, and those of the shackles.
         networks: Train graph networks too (JAX). [default: with --full]
@@ -58,6 +60,7 @@ def paper(
             quick=quick,
             campaign=campaign,
             field=field,
+            loads=loads,
             days=days,
             one_in=one_in,
             networks=networks,
@@ -71,6 +74,7 @@ def paper(
             "sensors": [asdict(one) for one in study.sensors],
             "shapes": [_shape_entry(one) for one in study.shapes],
             "claims": [asdict(claim) for claim in study.claims],
+            "wave_loads": None if study.loads is None else asdict(study.loads),
         },
         rows=[
             *error_rows(study.sensors),

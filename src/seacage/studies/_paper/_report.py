@@ -6,8 +6,10 @@ import numpy as np
 
 from seacage.conventions import Origin
 from seacage.figures import (
+    Contest,
     ShapeView,
     TrainingScores,
+    error_figure,
     net_figure,
     rows_figure,
     shape_cases_figure,
@@ -28,6 +30,7 @@ from seacage.studies._paper._shape_models import (
 )
 from seacage.studies._paper._shape_study import ShapeCase, ShapeStudy
 from seacage.studies._paper._trainings import HEARING, ScoredWays, WayScore
+from seacage.studies._paper._wave_loads import BASELINES, METHODS, STATISTICS, WaveLoads
 
 _SHOWN_SPEED = 0.6  # of the current that the net is drawn in [m/s]
 _NOMINAL = 0.95  # coverage of the intervals
@@ -36,13 +39,16 @@ _DRAWN_MODELS = (PCA_PAPER, GCN_PAPER, GCN_OURS, SHAPE_CURRENT)
 _NETS = (PCA_PAPER, GCN_PAPER)
 
 
-def page_values(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[str, object]:
+def page_values(
+    chain: Chain, scored: ScoredWays, shapes: ShapeStudy, loads: WaveLoads | None
+) -> dict[str, object]:
     """Figures and names of the page besides the scores.
 
     ``chain``: its cage is drawn in one sea state; its progress is called as ("draw", done, total)
     in figures of sensors.
     ``scored``: ways of training and their scores, with the readings of the first.
     ``shapes``: scores of models of the whole shape on held-out simulations.
+    ``loads``: scores of loads in waves.
     """
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
     return {
@@ -51,6 +57,9 @@ def page_values(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[st
         "scored": scored,
         "shapes": shapes,
         "in_time": chain.recipe.in_time,
+        "methods": METHODS,
+        "baselines": BASELINES,
+        "statistics": tuple(STATISTICS.values()),
         "computed": Origin.COMPUTED,
         **finding_values(scored),
         "drawn": _draw_sensors(chain, scored),
@@ -62,6 +71,7 @@ def page_values(chain: Chain, scored: ScoredWays, shapes: ShapeStudy) -> dict[st
         "pictures": {
             "net": _draw_net(chain, scored, sea),
             "ways": _draw_ways(scored.ways),
+            "loads": draw_wave_loads(loads) if loads and loads.scores else None,
             **_draw_shapes(chain, shapes),
         },
     }
@@ -133,6 +143,21 @@ def _draw_ways(ways: Sequence[WayScore]) -> str | None:
     }
     names = [one.sensor for one in sensors]
     return embed(training_scores_figure(names, scores, origin=sensors[0].origin))
+
+
+def draw_wave_loads(loads: WaveLoads) -> str:
+    """Errors of each statistic by method, a dot for each shackle."""
+    contests = list[Contest]()
+    for name in STATISTICS.values():
+        some = [one.error for one in loads.scores if one.statistic == name]
+        error = np.array([[one[method] for one in some] for method in METHODS])
+        if some:
+            none = np.full(len(METHODS), np.nan)
+            contests.append(Contest(title=name.capitalize(), error=error, coverage=none))
+    label = f"Median error over the reading ({loads.scores[0].origin})"
+    return embed(
+        error_figure([one.capitalize() for one in METHODS], contests, ours=(0, 1), label=label)
+    )
 
 
 def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> dict[str, str]:

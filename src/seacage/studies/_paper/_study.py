@@ -18,6 +18,7 @@ from seacage.studies._paper._shape_models import shape_models
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_study
 from seacage.studies._paper._trainings import ScoredWays, WayScore, compare_ways, has_waves, ways_of
+from seacage.studies._paper._wave_loads import WaveLoads, wave_loads
 from seacage.studies._sensor_scores import SensorScore
 from seacage.studies._text import join_names
 from seacage.twin import TrainingWindow
@@ -35,6 +36,7 @@ class PaperStudy:
     ways: tuple[WayScore, ...]  # the scores of each way of training, that of ``sensors`` first
     shapes: tuple[ShapeScore, ...]  # the score of each model of the whole shape
     claims: tuple[PaperClaim, ...]  # of the paper, with their verdicts
+    loads: WaveLoads | None  # those in waves; None where they were not studied
 
 
 def paper_study(
@@ -44,6 +46,7 @@ def paper_study(
     quick: bool = True,
     campaign: str | Path | None = None,
     field: str | Path | None = None,
+    loads: str | Path | None = None,
     days: float = 48.0,
     one_in: int = 1,
     networks: bool | None = None,
@@ -75,6 +78,9 @@ def paper_study(
     field
         Folder of a virtual field with its truth in ``truth``, in place of one made here. The
         first half of its days are training days.
+    loads
+        A finished campaign of plan ``loads``, for the loads in waves, in place of one made here
+        of 120 cases when quick and of 480 otherwise.
     days, one_in
         Of a field made in full size: its length, and to simulate one hour in so many and those
         of the shackles.
@@ -97,12 +103,18 @@ def paper_study(
         workers=workers,
         progress=progress or no_progress,
     )
-    return study_chain(chain, Path(out), networks=not quick if networks is None else networks)
-
-
-def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStudy:
-    """Score a chain and report on it, making the stages that are missing."""
     _check(chain)
+    waves = wave_loads(
+        chain, cases=120 if quick else 480, given=None if loads is None else Path(loads)
+    )
+    networks = not quick if networks is None else networks
+    return study_chain(chain, Path(out), networks=networks, loads=waves)
+
+
+def study_chain(
+    chain: Chain, out: Path, *, networks: bool = False, loads: WaveLoads | None = None
+) -> PaperStudy:
+    """Score a chain and report on it, making the stages that are missing."""
     scored = compare_ways(chain, ways_of(chain.recipe, waves=has_waves(chain)))
     level_one = score_level_one(scored.twin, chain.held_out)
     shapes = _shapes(chain, networks=networks)
@@ -118,8 +130,9 @@ def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStud
         "shapes": shape_scores,
         "variance_of_three_modes": shapes.variance,
         "claims": claims,
+        "wave_loads": loads,
     }
-    values = page_values(chain, scored, shapes)
+    values = page_values(chain, scored, shapes, loads)
     written, numbers = write_report(out, "paper.html", scores, values)
     return PaperStudy(
         report=written,
@@ -129,6 +142,7 @@ def study_chain(chain: Chain, out: Path, *, networks: bool = False) -> PaperStud
         ways=scored.ways,
         shapes=shape_scores,
         claims=claims,
+        loads=loads,
     )
 
 
