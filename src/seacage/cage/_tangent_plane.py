@@ -27,10 +27,7 @@ class TangentPlane:
     (8 mm at 31 m and 1.6 km), upwards d² / 2R (5 mm at 250 m, 8 cm at 1 km). Tides and the
     geoid are left out: a depth is below the water as it stands.
 
-    Parameters
-    ----------
-    latitude, longitude
-        Of the centre, WGS84 [deg].
+    ``latitude``, ``longitude``: of the centre, WGS84 [deg].
     """
 
     latitude: float

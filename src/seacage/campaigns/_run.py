@@ -128,14 +128,9 @@ def run_share(
 
     Whoever runs the last block sums up.
 
-    Parameters
-    ----------
-    cage, plan, out, workers, cluster, progress
-        As for ``run_campaign``.
-    by
-        What answers the cases.
-    share
-        Which share, from 0, and of how many.
+    ``cage``, ``plan``, ``out``, ``workers``, ``cluster``, ``progress``: as for ``run_campaign``.
+    ``by``: what answers the cases.
+    ``share``: which share, from 0, and of how many.
     """
     import zarr  # noqa: F401  # where it is absent this is said before hours of work, not after
 

@@ -157,11 +157,8 @@ class Plan:
         waves of 0.05 m and more, with Tp from the steepness limit to three times 5 sqrt(Hs), 18 s
         at most, and one case in 16 on a corner of the ranges.
 
-        Parameters
-        ----------
-        ranges
-            To take in place of the plan's own, by the names of ``Plan.sample``; the plan is
-            then called by them, too.
+        ``ranges``: to take in place of the plan's own, by the names of ``Plan.sample``; the plan is
+        then called by them, too.
         """
         if name not in _RANGES:
             raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_RANGES)}.")

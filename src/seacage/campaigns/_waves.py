@@ -32,14 +32,9 @@ def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record
     is log-normal above 0.75, larger in low seas; the direction wanders about west-southwest.
     It is no place's climate: origin "virtual field".
 
-    Parameters
-    ----------
-    seed
-        Of the weather.
-    start
-        Time of the first value, with its zone.
-    days
-        Length of the record, of a value an hour.
+    ``seed``: of the weather.
+    ``start``: time of the first value, with its zone.
+    ``days``: length of the record, of a value an hour.
     """
     steps = int(days * 24.0)
     if steps < 1:

@@ -15,10 +15,10 @@ from seacage.conventions._intake import (
     TABLE_BYTES,
     TEXT_BYTES,
     check_file,
-    packaged_table,
     parse_json,
     parse_toml,
     read_bytes,
+    read_packaged_table,
     read_text,
 )
 from seacage.conventions._origin import Origin
@@ -51,10 +51,10 @@ __all__ = [
     "gravest",
     "has_answer",
     "no_progress",
-    "packaged_table",
     "parse_json",
     "parse_toml",
     "read_bytes",
+    "read_packaged_table",
     "read_text",
     "towards",
 ]

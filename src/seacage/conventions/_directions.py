@@ -27,12 +27,8 @@ def towards(
 ) -> Float[np.ndarray, "*n 2"]:
     """Horizontal vectors (east, north) of flows that go towards a direction.
 
-    Parameters
-    ----------
-    speed
-        Length of the vector [any unit, kept].
-    degrees_to
-        Clockwise from true north, where the flow goes [deg].
+    ``speed``: length of the vector [any unit, kept].
+    ``degrees_to``: clockwise from true north, where the flow goes [deg].
     """
     angle = np.deg2rad(degrees_to)
     return np.stack([speed * np.sin(angle), speed * np.cos(angle)], axis=-1)

@@ -84,7 +84,7 @@ def parse_json(text: str | bytes, source: str, *, refusal: Refusal = InputError)
     return value
 
 
-def packaged_table(package: str, name: str) -> dict[str, Any]:
+def read_packaged_table(package: str, name: str) -> dict[str, Any]:
     """Read a TOML or JSON file that ships with a package, such as ``"seacage.records"``."""
     text = files(package).joinpath(name).read_text("utf-8")
     return parse_json(text, name) if name.endswith(".json") else parse_toml(text, name)

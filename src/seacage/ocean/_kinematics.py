@@ -22,12 +22,8 @@ BAND = (0.5, 4.0)
 def wavenumber(angular_frequency: PerN, *, depth: float) -> PerN:
     """Wave number of a linear wave: the root k of omega^2 = g k tanh(k depth) [1/m].
 
-    Parameters
-    ----------
-    angular_frequency
-        At least 0 [rad/s].
-    depth
-        Of the water [m].
+    ``angular_frequency``: at least 0 [rad/s].
+    ``depth``: of the water [m].
 
     Source: start by Eckart (1952), within 5 %; then Newton, which doubles the digits each time.
     """
@@ -216,14 +212,9 @@ def water_motion(
     zero. The acceleration is that at a fixed place. Left out: second-order waves and the
     convective acceleration.
 
-    Parameters
-    ----------
-    waves
-        The sea.
-    position
-        East, north, up from still water [m].
-    time
-        Broadcast against the positions [s].
+    ``waves``: the sea.
+    ``position``: east, north, up from still water [m].
+    ``time``: broadcast against the positions [s].
 
     Returns
     -------
@@ -257,14 +248,9 @@ def pressure_head(waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]) ->
 
     Below still water as in linear theory, above it as at still water.
 
-    Parameters
-    ----------
-    waves
-        The sea.
-    position
-        East, north, up from still water [m].
-    time
-        Broadcast against the positions [s].
+    ``waves``: the sea.
+    ``position``: east, north, up from still water [m].
+    ``time``: broadcast against the positions [s].
 
     Source: Airy (1845), finite depth.
     """
@@ -305,14 +291,9 @@ def wave_velocity_variance(
     Linear and unstretched: heights above still water count as 0, those below the bottom as the
     bottom. Waves shorter than a tenth of the peak's period are left out.
 
-    Parameters
-    ----------
-    sea
-        Without waves everything is 0.
-    z
-        Up from still water [m].
-    depth
-        Of the water [m].
+    ``sea``: without waves everything is 0.
+    ``z``: up from still water [m].
+    ``depth``: of the water [m].
 
     Returns
     -------

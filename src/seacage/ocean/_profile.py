@@ -19,14 +19,9 @@ class CurrentProfile:
     Raises InputError: depths that do not grow, a number for each depth that is missing, or a factor
     below 0.
 
-    Parameters
-    ----------
-    depth
-        Below still water, growing [m].
-    factor
-        Speed over the sea's ``current_speed`` [-].
-    turned
-        Clockwise from the sea's ``current_to`` [deg]; none by default.
+    ``depth``: below still water, growing [m].
+    ``factor``: speed over the sea's ``current_speed`` [-].
+    ``turned``: clockwise from the sea's ``current_to`` [deg]; none by default.
     """
 
     depth: tuple[float, ...]

@@ -27,12 +27,8 @@ def spectrum(
     The integral is Hs^2 / 16 to within 2 %, the error of the published normalising factor.
     Where there are no waves it is zero.
 
-    Parameters
-    ----------
-    sea
-        Its hs and tp count, its directions do not.
-    angular_frequency
-        [rad/s]; zero at and below 0.
+    ``sea``: its hs and tp count, its directions do not.
+    ``angular_frequency``: [rad/s]; zero at and below 0.
 
     Returns
     -------

@@ -19,14 +19,9 @@ class WaveDraw:
 
     A sea that changes slowly keeps its draw, so that its waves stay the same ones.
 
-    Parameters
-    ----------
-    frequency
-        Over the peak's, one in each bin [-].
-    phase
-        At the origin at time 0 [rad].
-    turned
-        Clockwise from the sea's direction [rad].
+    ``frequency``: over the peak's, one in each bin [-].
+    ``phase``: at the origin at time 0 [rad].
+    ``turned``: clockwise from the sea's direction [rad].
     """
 
     frequency: Float[np.ndarray, " wave"]
@@ -40,14 +35,9 @@ class WaveDraw:
         Each frequency is random in a bin of its own. Directions follow the golden section from
         a random one, so that neighbours in frequency cover the spread between them.
 
-        Parameters
-        ----------
-        rng
-            Source of chance.
-        components
-            How many waves.
-        spreading
-            As for ``spread_angle``.
+        ``rng``: source of chance.
+        ``components``: how many waves.
+        ``spreading``: as for ``spread_angle``.
         """
         edges = np.linspace(*BAND, components + 1)
         share = (rng.random() + _GOLDEN * np.arange(components)) % 1.0

@@ -61,14 +61,9 @@ def aligned(
     vectors: a current's with its speed, so that the speed is that of the mean vector, waves' as
     unit vectors. A quantity whose window has a gap is missing there.
 
-    Parameters
-    ----------
-    record
-        Checked; failed and missing values are left out.
-    clock
-        The times, and what counts at each.
-    start, end
-        start <= t < end; where left out, the record's own.
+    ``record``: checked; failed and missing values are left out.
+    ``clock``: the times, and what counts at each.
+    ``start``, ``end``: start <= t < end; where left out, the record's own.
 
     Returns
     -------

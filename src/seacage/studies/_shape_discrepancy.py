@@ -54,14 +54,9 @@ def learned_discrepancy(
     Virtual field: at a farm the truth would have to be measured, by sonar or by divers; until
     it is, this is an assumption about how such shapes err.
 
-    Parameters
-    ----------
-    twin
-        Whose shapes.
-    hidden
-        How the true cage differs; None for that of cage ``ace``.
-    seeds, cases, workers, progress
-        As for ``true_shapes``.
+    ``twin``: whose shapes.
+    ``hidden``: how the true cage differs; None for that of cage ``ace``.
+    ``seeds``, ``cases``, ``workers``, ``progress``: as for ``true_shapes``.
     """
     shapes = true_shapes(
         twin.cage,

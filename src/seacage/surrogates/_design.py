@@ -15,14 +15,9 @@ def spread_design(
     one and make intervals too narrow. With inputs and time among the axes the choice
     reaches rare inputs and every part of the time.
 
-    Parameters
-    ----------
-    place
-        Of each point, in axes that are alike important.
-    count
-        How many; all of them where there are no more.
-    seed
-        Of the first one.
+    ``place``: of each point, in axes that are alike important.
+    ``count``: how many; all of them where there are no more.
+    ``seed``: of the first one.
 
     Returns
     -------

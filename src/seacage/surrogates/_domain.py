@@ -17,10 +17,7 @@ class Domain:
 
     A box: it knows nothing of gaps inside it, and of a current its speed limits the corners.
 
-    Parameters
-    ----------
-    lower, upper
-        Smallest and largest value of each feature.
+    ``lower``, ``upper``: smallest and largest value of each feature.
     """
 
     lower: Float[np.ndarray, " feature"]

@@ -18,10 +18,7 @@ def current_features(current_velocity: Row2) -> Float[np.ndarray, "row 3"]:
     The vector alone would do, but loads grow with the speed, and the speed has a kink at slack
     water that a smooth function of the vector cannot follow.
 
-    Parameters
-    ----------
-    current_velocity
-        Towards (east, north) [m/s].
+    ``current_velocity``: towards (east, north) [m/s].
 
     Returns
     -------
@@ -39,14 +36,9 @@ def wave_features(hs: PerRow, wave_direction: Row2, *, tp: PerRow | None = None)
     being the speed of the water at the surface of regular waves of that height and period: what
     the waves add to the current.
 
-    Parameters
-    ----------
-    hs
-        Significant wave height [m].
-    wave_direction
-        Unit vector that the waves travel along, (east, north) [-].
-    tp
-        Peak period [s]; of no meaning where there are no waves.
+    ``hs``: significant wave height [m].
+    ``wave_direction``: unit vector that the waves travel along, (east, north) [-].
+    ``tp``: peak period [s]; of no meaning where there are no waves.
 
     Returns
     -------
@@ -71,10 +63,8 @@ def metocean_features(
 
     ``ShapeGP`` can turn these, so it may fold by a symmetry.
 
-    Parameters
-    ----------
-    current_velocity, hs, wave_direction, tp
-        As there; without ``hs`` the current alone.
+    ``current_velocity``, ``hs``, ``wave_direction``, ``tp``: as there; without ``hs`` the current
+    alone.
 
     Returns
     -------
@@ -96,14 +86,9 @@ def sea_features(
 ) -> Float[np.ndarray, "row 7"]:
     """Features of a sea whose loads vary with its waves.
 
-    Parameters
-    ----------
-    current_velocity
-        Towards (east, north) [m/s].
-    hs, tp
-        Significant wave height [m], peak period [s].
-    wave_direction
-        Unit vector that the waves travel along, (east, north) [-].
+    ``current_velocity``: towards (east, north) [m/s].
+    ``hs``, ``tp``: significant wave height [m], peak period [s].
+    ``wave_direction``: unit vector that the waves travel along, (east, north) [-].
 
     Returns
     -------

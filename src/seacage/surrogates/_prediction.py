@@ -15,10 +15,7 @@ from seacage.conventions import InputError, Rows
 class Prediction(Rows):
     """Mean and standard deviation, in the unit of what was learned.
 
-    Parameters
-    ----------
-    mean, std
-        Of the same shape: (row,), (row, output) or (row, node, 3).
+    ``mean``, ``std``: of the same shape: (row,), (row, output) or (row, node, 3).
     """
 
     mean: Float[np.ndarray, "row *rest"]

@@ -32,11 +32,8 @@ Fitted = (
 def encode(fitted: Fitted) -> tuple[Settings, Arrays]:
     """A fitted model as values for JSON and float64 arrays by name.
 
-    Parameters
-    ----------
-    fitted
-        Any fitted model of this room, or a table of one. A view of a model (an output, a
-        coordinate) is made again from its whole; a NARGP on a lent level 1 leaves that level out.
+    ``fitted``: any fitted model of this room, or a table of one. A view of a model (an output, a
+    coordinate) is made again from its whole; a NARGP on a lent level 1 leaves that level out.
     """
     return fitted.to_arrays()
 
@@ -51,12 +48,8 @@ def decode(
 
     Raises ModelError: of a kind that this version does not know, or with a part missing or damaged.
 
-    Parameters
-    ----------
-    settings, arrays
-        As ``encode`` gave them.
-    lower
-        Level 1 of a NARGP that had it lent.
+    ``settings``, ``arrays``: as ``encode`` gave them.
+    ``lower``: level 1 of a NARGP that had it lent.
     """
     model = setting(settings, "model", str)
     if model == FittedNARGP.MODEL:

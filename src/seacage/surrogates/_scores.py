@@ -13,10 +13,7 @@ PerN = Float[np.ndarray, "*n"]
 def mae(truth: PerN, mean: PerN) -> float:
     """Mean absolute error, in the unit of the truth.
 
-    Parameters
-    ----------
-    truth, mean
-        What happened and what was predicted; every entry counts alike.
+    ``truth``, ``mean``: what happened and what was predicted; every entry counts alike.
     """
     return float(np.mean(np.abs(_error(truth, mean))))
 
@@ -24,10 +21,7 @@ def mae(truth: PerN, mean: PerN) -> float:
 def rmse(truth: PerN, mean: PerN) -> float:
     """Root mean square error, in the unit of the truth.
 
-    Parameters
-    ----------
-    truth, mean
-        What happened and what was predicted; every entry counts alike.
+    ``truth``, ``mean``: what happened and what was predicted; every entry counts alike.
     """
     return float(np.sqrt(np.mean(_error(truth, mean) ** 2)))
 
@@ -37,10 +31,7 @@ def crps(truth: PerN, mean: PerN, std: PerN) -> float:
 
     Smaller is better; where the standard deviation is 0 it is the absolute error.
 
-    Parameters
-    ----------
-    truth, mean, std
-        What happened, and what was predicted.
+    ``truth``, ``mean``, ``std``: what happened, and what was predicted.
 
     Source: Gneiting & Raftery (2007), eq. (21).
     """
@@ -58,12 +49,8 @@ def crps(truth: PerN, mean: PerN, std: PerN) -> float:
 def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> float:
     """Share of the truth inside the central Gaussian interval of a level.
 
-    Parameters
-    ----------
-    truth, mean, std
-        What happened, and what was predicted.
-    level
-        Nominal share, between 0 and 1.
+    ``truth``, ``mean``, ``std``: what happened, and what was predicted.
+    ``level``: nominal share, between 0 and 1.
     """
     from scipy.special import ndtri
 
@@ -76,10 +63,8 @@ def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> floa
 def mnll(truth: PerN, mean: PerN, std: PerN) -> float:
     """Mean negative log likelihood of Gaussian predictions [nat]; smaller is better.
 
-    Parameters
-    ----------
-    truth, mean, std
-        What happened, and what was predicted; the standard deviation above 0.
+    ``truth``, ``mean``, ``std``: what happened, and what was predicted; the standard deviation
+    above 0.
 
     Source: Rasmussen & Williams (2006), eq. (2.34).
     """
@@ -91,10 +76,7 @@ def mnll(truth: PerN, mean: PerN, std: PerN) -> float:
 def skill(score: float, reference: float) -> float:
     """Share of a reference's score that is gained: 1 is perfect, 0 no better, negative worse.
 
-    Parameters
-    ----------
-    score, reference
-        Of the model and of what it is held against; both 0 at best.
+    ``score``, ``reference``: of the model and of what it is held against; both 0 at best.
 
     Source: Murphy (1988), eq. (4).
     """
@@ -111,12 +93,8 @@ def block_means(
 ) -> tuple[Shaped[np.ndarray, " block"], list[Float[np.ndarray, " block"]]]:
     """Mean of each column over the rows of each block.
 
-    Parameters
-    ----------
-    label
-        Block of each row; rows of a block need not be neighbours.
-    columns
-        Any.
+    ``label``: block of each row; rows of a block need not be neighbours.
+    ``columns``: any.
 
     Returns
     -------

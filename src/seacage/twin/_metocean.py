@@ -32,15 +32,10 @@ def input_keys(inputs: Iterable[Input]) -> list[str]:
 class Metocean(Rows):
     """The water at the buoy, NaN where it is not known.
 
-    Parameters
-    ----------
-    current_velocity
-        Towards (east, north) [m/s].
-    hs, tp
-        Significant wave height [m] and peak period [s]; where there are no waves the period is of
-        no meaning.
-    wave_direction
-        Unit vector the waves travel along, (east, north) [-].
+    ``current_velocity``: towards (east, north) [m/s].
+    ``hs``, ``tp``: significant wave height [m] and peak period [s]; where there are no waves the
+    period is of no meaning.
+    ``wave_direction``: unit vector the waves travel along, (east, north) [-].
     """
 
     current_velocity: Float[np.ndarray, "case 2"]
@@ -110,10 +105,7 @@ class Metocean(Rows):
     def limited(self, *, current_speed: float, hs: float) -> Self:
         """Return the nearest milder water: slower and lower, in the same directions.
 
-        Parameters
-        ----------
-        current_speed, hs
-            Largest that are left as they are [m/s], [m].
+        ``current_speed``, ``hs``: largest that are left as they are [m/s], [m].
         """
         speed = np.linalg.norm(self.current_velocity, axis=-1, keepdims=True)
         slower = np.minimum(1.0, current_speed / np.maximum(speed, current_speed))
@@ -123,10 +115,7 @@ class Metocean(Rows):
     def sides(self, step: float) -> Self:
         """Return the water with a little more current to the east, west, north and south in turn.
 
-        Parameters
-        ----------
-        step
-            Of the current [m/s].
+        ``step``: of the current [m/s].
         """
         ways = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         around = self.rows(np.tile(np.arange(len(self)), len(ways)))

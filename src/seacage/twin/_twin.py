@@ -118,11 +118,8 @@ class Twin:
     def predict(self, metocean: SeaState | Sequence[SeaState] | Metocean) -> Answer:
         """Answer for each row of water; a row with an unknown input is not valid.
 
-        Parameters
-        ----------
-        metocean
-            One sea state, several, or vectors; outside what level 1 was trained on the spread
-            is widened, and ``in_domain`` is False.
+        ``metocean``: one sea state, several, or vectors; outside what level 1 was trained on the
+        spread is widened, and ``in_domain`` is False.
         """
         water = metocean if isinstance(metocean, Metocean) else Metocean.of(metocean)
         return self.models.answer(
@@ -157,12 +154,8 @@ class Twin:
     ) -> IfParted:
         """What the cage would bear if a line had parted, once the transient has died.
 
-        Parameters
-        ----------
-        metocean
-            As for ``predict``.
-        line
-            Such as "bridle-8"; None for every line that was learned, one at a time.
+        ``metocean``: as for ``predict``.
+        ``line``: such as "bridle-8"; None for every line that was learned, one at a time.
 
         Raises InputError: the twin has not learned it.
         """
@@ -185,13 +178,9 @@ class Twin:
 
         Raises InputError: ``adapted`` is something else.
 
-        Parameters
-        ----------
-        adapted
-            From ``TwinState.adapted`` of another time; None begins with the intervals as
-            trained.
-        until
-            And its ``adapted_until``; None goes on from the first step.
+        ``adapted``: from ``TwinState.adapted`` of another time; None begins with the intervals as
+        trained.
+        ``until``: and its ``adapted_until``; None goes on from the first step.
         """
         tracked = factors_from_json(adapted) if adapted is not None else {}
         return TwinState(tracked=tracked, adapted_until=until)
@@ -204,14 +193,9 @@ class Twin:
         Nothing is read but the arguments: the same samples and clock give the same events.
         A tick is always answered, and so is a sample that changes the buoy's newest values.
 
-        Parameters
-        ----------
-        state
-            From ``start`` or from the last step.
-        sample
-            None for a tick.
-        now
-            The clock, with its zone; in a replay it is the record's own.
+        ``state``: from ``start`` or from the last step.
+        ``sample``: None for a tick.
+        ``now``: the clock, with its zone; in a replay it is the record's own.
 
         Returns
         -------
@@ -236,14 +220,9 @@ class Twin:
     ) -> tuple[TwinState, tuple[Event, ...]]:
         """Take many samples in, without an answer; a tick gives it then.
 
-        Parameters
-        ----------
-        state, now
-            As for ``step``.
-        samples
-            In any order. Those without flags are checked.
-        amendments
-            Flags of earlier samples that have changed since.
+        ``state``, ``now``: as for ``step``.
+        ``samples``: in any order. Those without flags are checked.
+        ``amendments``: flags of earlier samples that have changed since.
         """
         state, notices = receive(
             state,

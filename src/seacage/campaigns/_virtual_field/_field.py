@@ -40,14 +40,9 @@ FieldMethod = Literal["simulate", "settle"]
 class VirtualField:
     """Readings of the virtual sensors, and the truth behind them.
 
-    Parameters
-    ----------
-    record
-        With noise, drift, gaps and outages: all that training may see.
-    truth
-        The same sensors without error and outages, to score against.
-    means
-        What no sensor sees; None where the cage was settled.
+    ``record``: with noise, drift, gaps and outages: all that training may see.
+    ``truth``: the same sensors without error and outages, to score against.
+    ``means``: what no sensor sees; None where the cage was settled.
     """
 
     record: FieldRecord
@@ -166,14 +161,10 @@ def virtual_field_share(
 
     ``virtual_field`` with the same words puts the field together, and simulates what is missing.
 
-    Parameters
-    ----------
-    cage, buoy, hidden, seed, waves, events, every_s, timetable, workers, progress
-        As for ``virtual_field``.
-    kept
-        Folder of the finished stretches.
-    share
-        Which share, from 0, and of how many.
+    ``cage``, ``buoy``, ``hidden``, ``seed``, ``waves``, ``events``, ``every_s``, ``timetable``,
+    ``workers``, ``progress``: as for ``virtual_field``.
+    ``kept``: folder of the finished stretches.
+    ``share``: which share, from 0, and of how many.
     """
     request = FieldRequest(
         cage=cage,

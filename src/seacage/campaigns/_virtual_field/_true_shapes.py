@@ -29,12 +29,8 @@ _GROWTH_STEP = 0.25
 class TrueShapes:
     """Shapes of a virtual field's cage, and the currents that its buoy reported meanwhile.
 
-    Parameters
-    ----------
-    current_velocity
-        As reported, (east, north) [m/s].
-    node_position
-        As they truly were [m].
+    ``current_velocity``: as reported, (east, north) [m/s].
+    ``node_position``: as they truly were [m].
     """
 
     current_velocity: Float[np.ndarray, "case 2"]

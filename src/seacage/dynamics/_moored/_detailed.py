@@ -22,13 +22,9 @@ IntPerSpoke = Int[np.ndarray, " spoke"]
 class Damage:
     """Damage of a cage: a parted bridle, a hole in the netting, or both.
 
-    Parameters
-    ----------
-    bridle
-        Index of the bridle that parts, from 0.
-    hole
-        Ring and spoke of the upper corner of the netting that goes, and how many panels it is
-        wide and high. What hangs between the ropes is gone; the ropes hold.
+    ``bridle``: index of the bridle that parts, from 0.
+    ``hole``: ring and spoke of the upper corner of the netting that goes, and how many panels it is
+    wide and high. What hangs between the ropes is gone; the ropes hold.
     """
 
     bridle: int | None = None

@@ -65,12 +65,8 @@ AS_PUBLISHED = Tuning()  # no change
 def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
     """Drag and lift coefficients after Aarsnes.
 
-    Parameters
-    ----------
-    solidity
-        Projected twine area over panel area [-].
-    cos_theta
-        Cosine of the angle between the panel's normal and the flow, in [0, 1].
+    ``solidity``: projected twine area over panel area [-].
+    ``cos_theta``: cosine of the angle between the panel's normal and the flow, in [0, 1].
 
     Returns
     -------
@@ -97,13 +93,9 @@ def kristiansen_faltinsen(
 ) -> tuple[Values, Values]:
     """Drag and lift coefficients after Kristiansen and Faltinsen.
 
-    Parameters
-    ----------
-    solidity, cos_theta
-        As in ``aarsnes``.
-    reynolds
-        Of a twine in the flow between the twines, d|u| / (nu (1 − Sn)); held in
-        ``REYNOLDS_RANGE``, where the cylinder's fit ends.
+    ``solidity``, ``cos_theta``: as in ``aarsnes``.
+    ``reynolds``: of a twine in the flow between the twines, d|u| / (nu (1 − Sn)); held in
+    ``REYNOLDS_RANGE``, where the cylinder's fit ends.
 
     Returns
     -------

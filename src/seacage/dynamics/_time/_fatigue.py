@@ -19,14 +19,9 @@ def damage_equivalent_load(
     (Σ nᵢ ΔTᵢᵐ / (1 Hz · duration))^(1/m), the cycles counted by rainflow, half cycles as halves.
     Left out: the effect of the mean tension, bending over the fairlead, and corrosion.
 
-    Parameters
-    ----------
-    tension
-        Of each simulation of one sea [N].
-    slope
-        m of each line's T–N curve, NaN where there is none, which gives NaN [-].
-    every
-        Between samples [s].
+    ``tension``: of each simulation of one sea [N].
+    ``slope``: m of each line's T–N curve, NaN where there is none, which gives NaN [-].
+    ``every``: between samples [s].
 
     Source: rainflow: ASTM E1049-85 (2011), 5.4.4.
     """

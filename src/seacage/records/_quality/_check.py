@@ -69,14 +69,9 @@ def check_sample(
     a spike is known when the next has come: ``state.amended`` says it then. A late sample, older
     than the latest reading, is evaluated alone and leaves the state as it was.
 
-    Parameters
-    ----------
-    state
-        After the stream's previous sample.
-    sample
-        Flags that it already carries are replaced.
-    limits
-        What to compare with.
+    ``state``: after the stream's previous sample.
+    ``sample``: flags that it already carries are replaced.
+    ``limits``: what to compare with.
 
     Returns
     -------

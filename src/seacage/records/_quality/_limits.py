@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from seacage.conventions import packaged_table
+from seacage.conventions import read_packaged_table
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
@@ -28,12 +28,8 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
 class Range:
     """Gross range of one quantity, in the unit of its key; bounds included.
 
-    Parameters
-    ----------
-    fail
-        Outside, the value is impossible: FAIL.
-    suspect
-        Outside, it is possible but worth a look: SUSPECT.
+    ``fail``: outside, the value is impossible: FAIL.
+    ``suspect``: outside, it is possible but worth a look: SUSPECT.
     """
 
     fail: tuple[float, float]
@@ -84,12 +80,8 @@ class Steadiness:
 class Season:
     """What a quantity is like in some months at one site.
 
-    Parameters
-    ----------
-    months
-        1 to 12, of the UTC time.
-    range
-        As of the gross range.
+    ``months``: 1 to 12, of the UTC time.
+    ``range``: as of the gross range.
     """
 
     months: tuple[int, ...]
@@ -98,7 +90,7 @@ class Season:
 
 @cache
 def _defaults() -> Mapping[str, Any]:
-    return packaged_table("seacage.records", "limits.toml")
+    return read_packaged_table("seacage.records", "limits.toml")
 
 
 def _ranges() -> dict[str, Range]:
@@ -117,15 +109,10 @@ def _steadiness() -> dict[str, Steadiness]:
 class Limits:
     """Limits that a stream is checked against; ``Limits()`` suits a moored cage and its buoy.
 
-    Parameters
-    ----------
-    ranges
-        By door key.
-    steadiness
-        By group: ``current``, ``waves``, ``tension``, ``depth``.
-    climatology
-        By door key: what is usual in the months of the year, where the site knows it; no
-        default.
+    ``ranges``: by door key.
+    ``steadiness``: by group: ``current``, ``waves``, ``tension``, ``depth``.
+    ``climatology``: by door key: what is usual in the months of the year, where the site knows it;
+    no default.
     """
 
     ranges: Mapping[str, Range] = field(default_factory=_ranges)

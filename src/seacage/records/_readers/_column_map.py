@@ -224,12 +224,8 @@ class ColumnMap:
 
         Raises RecordError: no TOML, a misspelt or missing key, a value that is refused.
 
-        Parameters
-        ----------
-        text
-            Its other keys are those of ``ColumnMap`` and of ``Column``.
-        where
-            Of the text, for messages.
+        ``text``: its other keys are those of ``ColumnMap`` and of ``Column``.
+        ``where``: of the text, for messages.
         """
         table = parse_toml(text, where, refusal=RecordError)
         _toml.check_filled(table, where=where)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-from seacage.conventions import packaged_table
+from seacage.conventions import read_packaged_table
 
 Name = Annotated[str, Field(min_length=1, max_length=64)]  # of a cage, a stream, a sensor
 _YEARS = range(1900, 2200)
@@ -68,6 +68,6 @@ EXAMPLE_T = "2018-01-26T23:08:00Z"
 def with_examples(described: dict[str, Any]) -> dict[str, Any]:
     """Give each body of a description its example, with the nulls that FastAPI would leave out."""
     bodies = described["components"]["schemas"]
-    for name, example in packaged_table("seacage.service._schemas", "examples.json").items():
+    for name, example in read_packaged_table("seacage.service._schemas", "examples.json").items():
         bodies[name]["examples"] = [example]
     return described

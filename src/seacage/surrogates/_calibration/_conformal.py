@@ -22,14 +22,10 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     give the size of the errors poorly, and the interval is widened by the ratio of the Student-t
     to the normal quantile.
 
-    Parameters
-    ----------
-    score
-        Absolute error over predicted standard deviation of each prediction [-].
-    independent
-        How many independent scores these are worth, at least 2: tides, days or memories.
-    level
-        Share that the interval is to hold.
+    ``score``: absolute error over predicted standard deviation of each prediction [-].
+    ``independent``: how many independent scores these are worth, at least 2: tides, days or
+    memories.
+    ``level``: share that the interval is to hold.
 
     Returns
     -------
@@ -91,14 +87,10 @@ class AdaptiveConformal:
     one was held, so that in the long run the shares agree; no distribution is assumed. It needs
     the truth soon after each prediction.
 
-    Parameters
-    ----------
-    level
-        Share that the intervals are to hold.
-    rate
-        Step of the logarithm [-]: 0.01 forgets in some hundred truths.
-    floor, cap
-        Smallest and largest factor [-], so that a broken sensor cannot blow the intervals up.
+    ``level``: share that the intervals are to hold.
+    ``rate``: step of the logarithm [-]: 0.01 forgets in some hundred truths.
+    ``floor``, ``cap``: smallest and largest factor [-], so that a broken sensor cannot blow the
+    intervals up.
 
     Source: Gibbs & Candès (2021), "Adaptive conformal inference under distribution shift"; stepping
     the quantile itself: Angelopoulos, Candès & Tibshirani (2023), "Conformal PID control".
@@ -127,14 +119,9 @@ class AdaptiveConformal:
     ) -> Series:
         """Return the factor that each prediction gets from the truths before it.
 
-        Parameters
-        ----------
-        score
-            Absolute error over predicted standard deviation, in order of time [-].
-        counts
-            Which of them are known to step the factor; None for all.
-        start
-            The first factor.
+        ``score``: absolute error over predicted standard deviation, in order of time [-].
+        ``counts``: which of them are known to step the factor; None for all.
+        ``start``: the first factor.
         """
         from scipy.special import ndtri
 

@@ -28,16 +28,11 @@ class ResidualModel:
     smoother take time and memory in proportion to the number of values. The series has no mean
     and no trend: take them out before.
 
-    Parameters
-    ----------
-    memory_s, memory_factor
-        Prior of the memory: its median [s], and the factor that one standard deviation is.
-        It decides where the series is short.
-    degrees_of_freedom
-        Of the noise's Student-t, above 2: the fewer, the less an outlier counts. None is
-        Gaussian.
-    rounds
-        Of reweighting and searching, at most.
+    ``memory_s``, ``memory_factor``: prior of the memory: its median [s], and the factor that one
+    standard deviation is. It decides where the series is short.
+    ``degrees_of_freedom``: of the noise's Student-t, above 2: the fewer, the less an outlier
+    counts. None is Gaussian.
+    ``rounds``: of reweighting and searching, at most.
 
     Source: Student-t as a mixture of Gaussians, hence the weights: Lange, Little & Taylor (1989).
     """
@@ -65,12 +60,8 @@ class ResidualModel:
         Raises InputError: fewer than 3 values, times that do not ascend, or a number that is not
         finite.
 
-        Parameters
-        ----------
-        time_s
-            Ascending, from any moment [s].
-        value
-            Residuals of a model, in their own unit.
+        ``time_s``: ascending, from any moment [s].
+        ``value``: residuals of a model, in their own unit.
         """
         time, residual = _check_series(time_s, value)
         size = math.sqrt(float(np.mean(residual**2)))
@@ -118,10 +109,7 @@ class FittedResidual:
     def independent(self, span_s: float) -> float:
         """Number of independent values that the mean over a span is worth, at least 1 [-].
 
-        Parameters
-        ----------
-        span_s
-            Without gaps [s].
+        ``span_s``: without gaps [s].
 
         Source: variance of a time mean over that of a value: the double integral of the
         correlation.
@@ -135,10 +123,7 @@ class FittedResidual:
     def smoothed(self, at_s: ArrayLike) -> Prediction:
         """The slow part at some times, from all values before and after.
 
-        Parameters
-        ----------
-        at_s
-            In any order [s].
+        ``at_s``: in any order [s].
         """
         at = np.asarray(at_s, dtype=np.float64)
         if at.ndim != 1 or not np.isfinite(at).all():

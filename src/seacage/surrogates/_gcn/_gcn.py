@@ -211,14 +211,10 @@ class FittedGCN:
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the training.
-        noisy
-            Of a new case as the training had them. Otherwise without what differs between
-            neighbouring cases, which with many features holds much of the network's own miss:
-            for an interval about a shape ask noisy.
+        ``x``: one row per case, the features of the training.
+        ``noisy``: of a new case as the training had them. Otherwise without what differs between
+        neighbouring cases, which with many features holds much of the network's own miss: for an
+        interval about a shape ask noisy.
         """
         x = check_inputs(x, what="GCN.predict", width=len(self.network.scaling.centre))
         x = self.network.scaling.standardise(x)

@@ -75,14 +75,9 @@ class GaussianProcess:
     ) -> "FittedGaussianProcess":
         """Learn from inputs and outputs.
 
-        Parameters
-        ----------
-        x
-            One row per case.
-        y
-            (n,) or (n, outputs).
-        seed
-            Of the subset of points and of the random starts.
+        ``x``: one row per case.
+        ``y``: (n,) or (n, outputs).
+        ``seed``: of the subset of points and of the random starts.
         """
         what = "GaussianProcess.fit"
         x = check_inputs(x, what=what)
@@ -141,12 +136,8 @@ class FittedGaussianProcess:
     def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """Answer at each row of features.
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the training.
-        noisy
-            Of a new observation rather than of what lies behind it: adds the noise.
+        ``x``: one row per case, the features of the training.
+        ``noisy``: of a new observation rather than of what lies behind it: adds the noise.
         """
         x = self._standardise(x, what="predict")
         mean, variance = self._mix(x, [member.predict(x) for member in self.members])
@@ -199,12 +190,8 @@ class FittedGaussianProcess:
         It answers as if conditioned on all cases at once, at O(n^2) per new case; with noise
         per output, at O(n^3). Scales, amplitudes and shares stay those of the training.
 
-        Parameters
-        ----------
-        x
-            One row per new case.
-        y
-            (new,) or (new, outputs), as in the training.
+        ``x``: one row per new case.
+        ``y``: (new,) or (new, outputs), as in the training.
         """
         what = "updated"
         x = check_inputs(x, what=what, width=len(self.inputs.centre))

@@ -86,12 +86,8 @@ def case_inputs(
 ) -> Float[np.ndarray, "row 10"]:
     """Inputs of the kernels: Hs, the other features, current along the waves, root of Hs, number.
 
-    Parameters
-    ----------
-    x
-        From ``sea_features``.
-    number
-        Of each row's case.
+    ``x``: from ``sea_features``.
+    ``number``: of each row's case.
     """
     current, hs, wave, log_tp = np.split(x, (3, 4, 6), axis=1)
     along = np.sum(current[:, 1:] * wave, axis=1)

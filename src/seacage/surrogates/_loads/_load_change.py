@@ -20,14 +20,9 @@ class LoadChange:
     Both sides of the change are simulated in the same waves, so that what those did by chance
     falls out of it.
 
-    Parameters
-    ----------
-    mean
-        What the mean changes by [N].
-    maximum
-        What the expected largest of three hours, above the mean, changes by over Hs [N/m].
-    state
-        Other quantities of the state after the change, as they are.
+    ``mean``: what the mean changes by [N].
+    ``maximum``: what the expected largest of three hours, above the mean, changes by over Hs [N/m].
+    ``state``: other quantities of the state after the change, as they are.
     """
 
     mean: FittedGaussianProcess
@@ -81,14 +76,10 @@ class LoadChange:
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Mean and largest loads after the change, and the state, at each row of features.
 
-        Parameters
-        ----------
-        x
-            From ``sea_features``.
-        hs
-            Wave height where it is lower than in ``x``, else the same [m].
-        mean, maximum
-            Expected loads before the change: mean, and largest of three hours [N].
+        ``x``: from ``sea_features``.
+        ``hs``: wave height where it is lower than in ``x``, else the same [m].
+        ``mean``, ``maximum``: expected loads before the change: mean, and largest of three hours
+        [N].
         """
         inputs = case_inputs(x)
         after = np.maximum(mean + self.mean.mean(inputs), 0.0)  # a line never pushes

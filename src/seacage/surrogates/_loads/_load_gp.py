@@ -50,12 +50,9 @@ class LoadGP:
     with the waves and their scatter with the loads. Two times of one sea differ: a case has a
     deviation that its images have in common, and noise of each image besides.
 
-    Parameters
-    ----------
-    restarts
-        Random starts of each hyperparameter search beside the deterministic one.
-    symmetry
-        Of the lines' places: every case is learned with all its images. Needs ``sea_features``.
+    ``restarts``: random starts of each hyperparameter search beside the deterministic one.
+    ``symmetry``: of the lines' places: every case is learned with all its images. Needs
+    ``sea_features``.
     """
 
     restarts: int = 1

@@ -108,10 +108,7 @@ class LoadPrediction(Rows):
         The largest of all is taken to be Gumbel distributed, with the mode and the decay that the
         product of the cases' distributions has there.
 
-        Parameters
-        ----------
-        share
-            Length of each case, over the three hours that its own largest is of [-].
+        ``share``: length of each case, over the three hours that its own largest is of [-].
         """
         scale = np.maximum(self.gumbel * self.size, 1e-6)
         mode = self.base + self.size - EULER * scale - self.offset

@@ -93,12 +93,8 @@ class FittedMotionGP:
 
         The horizontal one is the root of both axes' variances together.
 
-        Parameters
-        ----------
-        x
-            From ``sea_features``.
-        hs
-            Wave height where it is lower than in ``x``, else the same [m].
+        ``x``: from ``sea_features``.
+        ``hs``: wave height where it is lower than in ``x``, else the same [m].
         """
         log = self.centre + self.process.mean(case_inputs(x)).reshape(len(x), -1) @ self.mode
         motion = np.maximum(x[:, [HEIGHT]] * np.exp(log) - self.offset, 0.0)

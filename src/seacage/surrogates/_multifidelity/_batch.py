@@ -130,12 +130,8 @@ class BatchedLevels:
     def predict(self, x: Float[np.ndarray, "row feature"], below: Prediction) -> Prediction:
         """Answer at each row of features what each level would answer alone.
 
-        Parameters
-        ----------
-        x
-            One row per case.
-        below
-            The level below each, (row, level).
+        ``x``: one row per case.
+        ``below``: the level below each, (row, level).
         """
         x = check_inputs(x, what="predict", width=self.unit.shape[2] - 1)
         counts = node_counts(below.std / self.bend)

@@ -132,17 +132,12 @@ class NARGP(AbstractMultifidelity):
     the level below, f_t(x) = g_t(x, f_{t-1}(x)), trained at the posterior mean of the level
     below, so that its inputs need not be among those below.
 
-    Parameters
-    ----------
-    linear
-        Expect a line in the level below, the same everywhere, which carries a plain ratio of
-        the two to where nothing was observed, and about it a curve that is held to an offset at
-        the mean of the level below. Where the level below explains most of this one as it is, the
-        ratio is expected to be near 1. False is the kernel as published.
-    noise, ensemble
-        Of every level, as for ``GaussianProcess``; a level has one output.
-    restarts
-        Of each level, as for ``GaussianProcess``.
+    ``linear``: expect a line in the level below, the same everywhere, which carries a plain ratio
+    of the two to where nothing was observed, and about it a curve that is held to an offset at the
+    mean of the level below. Where the level below explains most of this one as it is, the ratio is
+    expected to be near 1. False is the kernel as published.
+    ``noise``, ``ensemble``: of every level, as for ``GaussianProcess``; a level has one output.
+    ``restarts``: of each level, as for ``GaussianProcess``.
 
     Source: Perdikaris et al. (2017), "Nonlinear information fusion algorithms for data-efficient
     multi-fidelity modelling", Proc. R. Soc. A 473:20160751.
@@ -162,10 +157,7 @@ class AR1(AbstractMultifidelity):
     baseline to compare ``NARGP`` with. Levels are learned one after the other at the mean of
     the level below, and rho_t is integrated out. The fitted model is that of ``NARGP``.
 
-    Parameters
-    ----------
-    noise, ensemble, restarts
-        As for ``NARGP``.
+    ``noise``, ``ensemble``, ``restarts``: as for ``NARGP``.
 
     Sources: Kennedy & O'Hagan (2000), "Predicting the output from a complex computer code when fast
     approximations are available", Biometrika 87:1-13; Le Gratiet & Garnier (2014), Int. J.
@@ -248,12 +240,8 @@ class FittedNARGP:
 
         A lent level 1 that is no Gaussian process is differentiated by central differences.
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the training.
-        level
-            As for ``predict``.
+        ``x``: one row per case, the features of the training.
+        ``level``: as for ``predict``.
         """
         level = self._level(level, lowest=1, what="jacobian")
         x = check_inputs(x, what="jacobian", width=self._width)
@@ -272,12 +260,8 @@ class FittedNARGP:
         Levels below stay the same objects. Levels above were fitted at the mean of this one, so
         they are conditioned again on their own cases at its new mean, unless fitted nested.
 
-        Parameters
-        ----------
-        x, y
-            New cases; the level below is asked for its mean there.
-        level
-            From 2 to ``levels``, which None means.
+        ``x``, ``y``: new cases; the level below is asked for its mean there.
+        ``level``: from 2 to ``levels``, which None means.
         """
         level = self._level(level, lowest=2, what="updated")
         x = check_inputs(x, what="updated", width=self._width)
@@ -356,12 +340,8 @@ class FittedNARGP:
         Raises ModelError: a part is missing or damaged, or ``lower`` is given or left out against
         the settings.
 
-        Parameters
-        ----------
-        settings, arrays
-            As ``to_arrays`` gave them.
-        lower
-            Level 1, where another model had lent it.
+        ``settings``, ``arrays``: as ``to_arrays`` gave them.
+        ``lower``: level 1, where another model had lent it.
         """
         lent = setting(settings, "lent", bool)
         if lent != (lower is not None):

@@ -53,12 +53,8 @@ class Modes:
 class OverTime:
     """The shapes at all time steps of all cases, as far as principal modes know them.
 
-    Parameters
-    ----------
-    mean
-        Over all steps [m].
-    scatter
-        Mean product of two coordinates' distances from their means [m2].
+    ``mean``: over all steps [m].
+    ``scatter``: mean product of two coordinates' distances from their means [m2].
     """
 
     mean: Float[np.ndarray, " coordinate"]
@@ -84,15 +80,11 @@ class OverTime:
     ) -> Self:
         """Of what a campaign in time keeps in place of the shapes.
 
-        Parameters
-        ----------
-        node_position
-            Means over time of all cases that the moment is of: those that converged [m].
-        second_moment
-            Mean over time and cases of the products of displacements from the shape at rest
-            [m2].
-        rest_position
-            That shape: ``cage.design_position`` for a campaign of seacage [m].
+        ``node_position``: means over time of all cases that the moment is of: those that converged
+        [m].
+        ``second_moment``: mean over time and cases of the products of displacements from the shape
+        at rest [m2].
+        ``rest_position``: that shape: ``cage.design_position`` for a campaign of seacage [m].
         """
         mean = node_position.reshape(len(node_position), -1).mean(axis=0)
         if second_moment.shape != (len(mean), len(mean)) or rest_position.size != len(mean):
@@ -298,13 +290,9 @@ class FittedPcaGP:
     def predict(self, x: Float[np.ndarray, "row feature"], *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the training.
-        noisy
-            Of a new observation: adds the noise of the scores. What the modes leave out is in
-            the standard deviation either way.
+        ``x``: one row per case, the features of the training.
+        ``noisy``: of a new observation: adds the noise of the scores. What the modes leave out is
+        in the standard deviation either way.
         """
         answers = [score.predict(x, noisy=noisy) for score in self.scores]
         mean = np.stack([answer.mean for answer in answers], axis=1)

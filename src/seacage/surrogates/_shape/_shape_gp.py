@@ -71,14 +71,9 @@ class ShapeGP:
     def fit(self, x: NFeature, node_position: NNode3, *, seed: int = 0) -> "FittedShapeGP":
         """Learn from features and shapes.
 
-        Parameters
-        ----------
-        x
-            One row per case, e.g. from ``metocean_features``.
-        node_position
-            The shape of each case [m].
-        seed
-            Of the subset of points and of the random starts.
+        ``x``: one row per case, e.g. from ``metocean_features``.
+        ``node_position``: the shape of each case [m].
+        ``seed``: of the subset of points and of the random starts.
         """
         x, shape = check_shapes(x, node_position, what="ShapeGP.fit")
         if self.symmetry is not None:
@@ -155,25 +150,17 @@ class FittedShapeGP:
     def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """Shape at each row of features [m].
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the training.
-        noisy
-            Of a new observation: adds the noise. What compression leaves out is in the
-            standard deviation either way.
+        ``x``: one row per case, the features of the training.
+        ``noisy``: of a new observation: adds the noise. What compression leaves out is in the
+        standard deviation either way.
         """
         return self.predict_nodes(x, EVERY, noisy=noisy)
 
     def predict_nodes(self, x: RowFeature, nodes: Nodes, *, noisy: bool = False) -> Prediction:
         """These nodes alone at each row of features [m].
 
-        Parameters
-        ----------
-        x, noisy
-            As for ``predict``.
-        nodes
-            Which, from 0.
+        ``x``, ``noisy``: as for ``predict``.
+        ``nodes``: which, from 0.
         """
         x = self._check(x, what="predict")
         if self.symmetry is None:
@@ -198,12 +185,8 @@ class FittedShapeGP:
     def coordinate(self, node: int, axis: int) -> "FittedCoordinate":
         """One coordinate of one node, answered without the rest of the shape.
 
-        Parameters
-        ----------
-        node
-            From 0.
-        axis
-            0 east, 1 north, 2 up.
+        ``node``: from 0.
+        ``axis``: 0 east, 1 north, 2 up.
         """
         nodes = len(self.centre)
         if not (0 <= node < nodes and 0 <= axis < 3):

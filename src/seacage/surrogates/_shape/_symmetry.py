@@ -44,15 +44,10 @@ class Symmetry:
     def of(cls, rest_position: Node3, *, fold: int, mirror: float | None = None) -> Self:
         """Find which node falls on which, or refuse where one falls on none.
 
-        Parameters
-        ----------
-        rest_position
-            The net at rest, e.g. ``cage.design_position`` [m].
-        fold
-            How many turns in a full circle bring the net onto itself; 1 for mirrors alone.
-        mirror
-            Direction of a vertical mirror plane, counter-clockwise from east [deg]; a fold of
-            four has others every 45 degrees. None for no mirror.
+        ``rest_position``: the net at rest, e.g. ``cage.design_position`` [m].
+        ``fold``: how many turns in a full circle bring the net onto itself; 1 for mirrors alone.
+        ``mirror``: direction of a vertical mirror plane, counter-clockwise from east [deg]; a fold
+        of four has others every 45 degrees. None for no mirror.
         """
         if fold < 1 or (mirror is not None and not math.isfinite(mirror)):
             raise InputError(

@@ -67,13 +67,9 @@ class AbstractRegion(ABC):
 class Box(AbstractRegion):
     """Every feature between two limits.
 
-    Parameters
-    ----------
-    lower, upper
-        Limits of each feature; one number for each, at most three of them.
-    closed
-        Features that come back to where they began, as an angle or a phase does, by their
-        place: the model answers alike at both limits, and any other turn is brought back.
+    ``lower``, ``upper``: limits of each feature; one number for each, at most three of them.
+    ``closed``: features that come back to where they began, as an angle or a phase does, by their
+    place: the model answers alike at both limits, and any other turn is brought back.
     """
 
     lower: tuple[float, ...]
@@ -137,13 +133,9 @@ class Disc(AbstractRegion):
     Where an answer has a kink at the centre, as loads have at slack water, the grid's own
     centre lies on it.
 
-    Parameters
-    ----------
-    radius
-        Largest length, in the features' unit: of a current [m/s].
-    length_first
-        Whether the features are (length, east, north), as ``current_features`` makes them,
-        rather than (east, north).
+    ``radius``: largest length, in the features' unit: of a current [m/s].
+    ``length_first``: whether the features are (length, east, north), as ``current_features`` makes
+    them, rather than (east, north).
     """
 
     radius: float

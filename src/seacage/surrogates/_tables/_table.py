@@ -157,12 +157,8 @@ class Table:
 
         Raises InputError: a row lies outside the table, or it has no noise.
 
-        Parameters
-        ----------
-        x
-            One row per case, the features of the model.
-        noisy
-            Of a new observation: adds the noise.
+        ``x``: one row per case, the features of the model.
+        ``noisy``: of a new observation: adds the noise.
         """
         if noisy and not self.has_noise:
             raise InputError(

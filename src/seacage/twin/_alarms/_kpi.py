@@ -42,13 +42,9 @@ def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) 
 
     Raises InputError: the span does not end after it starts.
 
-    Parameters
-    ----------
-    journal
-        Lines in any order; those after the span are left out, those before it give the alarms
-        that stood when it began.
-    start, end
-        Of the span, with their zones.
+    ``journal``: lines in any order; those after the span are left out, those before it give the
+    alarms that stood when it began.
+    ``start``, ``end``: of the span, with their zones.
     """
     if not start < end:
         raise InputError(

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any, Self, cast
 
 from seacage.cage import Cage, mooring_lines
-from seacage.conventions import InputError, packaged_table
+from seacage.conventions import InputError, read_packaged_table
 from seacage.twin._alarms._alarm import Limit
 from seacage.twin._settings import StreamTimeouts
 
@@ -19,7 +19,7 @@ _KEYS = tuple(one.name for one in fields(Limit))
 @cache
 def default_limits() -> Mapping[str, Limit]:
     """Of each kind of alarm."""
-    tables = packaged_table("seacage.twin._alarms", "limits.toml")
+    tables = read_packaged_table("seacage.twin._alarms", "limits.toml")
     return {kind: Limit(**table) for kind, table in tables.items()}
 
 
@@ -27,17 +27,12 @@ def default_limits() -> Mapping[str, Limit]:
 class AlarmPolicy:
     """Limits of a cage's alarms.
 
-    Parameters
-    ----------
-    limits
-        By kind (``load``) or by name (``load.bridle-3``), which goes first. Loads are shares of
-        the bridle's capacity, volumes are losses as shares of the volume in still water,
-        silences are seconds; the others are 0 or 1, or shares of a test's limit.
-    names
-        The alarms of the cage; empty where no cage was given.
-    jump_s
-        Largest step of the clock between two assessments [s]; after a larger one, all delays
-        start again.
+    ``limits``: by kind (``load``) or by name (``load.bridle-3``), which goes first. Loads are
+    shares of the bridle's capacity, volumes are losses as shares of the volume in still water,
+    silences are seconds; the others are 0 or 1, or shares of a test's limit.
+    ``names``: the alarms of the cage; empty where no cage was given.
+    ``jump_s``: largest step of the clock between two assessments [s]; after a larger one, all
+    delays start again.
     """
 
     limits: Mapping[str, Limit]
@@ -54,14 +49,9 @@ class AlarmPolicy:
     ) -> Self:
         """Return the default limits.
 
-        Parameters
-        ----------
-        cage
-            Names the bridles and sensors that limits may be given for.
-        buoy
-            The stream that the inputs come from.
-        timeouts
-            Timeouts of the streams; None for the defaults.
+        ``cage``: names the bridles and sensors that limits may be given for.
+        ``buoy``: the stream that the inputs come from.
+        ``timeouts``: timeouts of the streams; None for the defaults.
         """
         timeouts = StreamTimeouts() if timeouts is None else timeouts
         limits = dict(default_limits())

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cache
 
-from seacage.conventions import duration_text, packaged_table
+from seacage.conventions import duration_text, read_packaged_table
 from seacage.twin._alarms._alarm import Alarm
 from seacage.twin._alarms._policy import AlarmPolicy
 
@@ -55,7 +55,7 @@ class _Words:
 
 @cache
 def _words() -> dict[str, _Words]:
-    tables = packaged_table("seacage.twin._alarms", "texts.toml")
+    tables = read_packaged_table("seacage.twin._alarms", "texts.toml")
     return {kind: _Words(**table) for kind, table in tables.items()}
 
 

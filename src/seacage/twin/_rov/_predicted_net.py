@@ -71,14 +71,9 @@ class PredictedNet:
 
         Raises StaleError: there is no valid answer, or it rests on too old a reading.
 
-        Parameters
-        ----------
-        twin, answered
-            The twin and its answer.
-        allow_stale
-            Accept the last sound reading however old it is.
-        most_age_s
-            Refuse a reading older than this [s]; None for the twin's own timeout.
+        ``twin``, ``answered``: the twin and its answer.
+        ``allow_stale``: accept the last sound reading however old it is.
+        ``most_age_s``: refuse a reading older than this [s]; None for the twin's own timeout.
         """
         answer, age_s = answered.answer, answered.input_age_s
         water = answered.metocean
@@ -114,14 +109,9 @@ class PredictedNet:
     def under(cls, twin: Twin, water: SeaState | Metocean, *, t: datetime) -> Self:
         """Return the net that a twin predicts in some water, as if it had just been read.
 
-        Parameters
-        ----------
-        twin
-            Whose net.
-        water
-            A sea state, or one row.
-        t
-            To give the net.
+        ``twin``: whose net.
+        ``water``: a sea state, or one row.
+        ``t``: to give the net.
         """
         row = Metocean.of(water) if isinstance(water, SeaState) else water
         answered = Answered(t=t, answer=twin.predict(row), metocean=row, input_age_s=0.0)
@@ -139,12 +129,8 @@ class PredictedNet:
         are of the expected net, displaced case by case along its normal: exact to first order
         in a case's difference from the expected net.
 
-        Parameters
-        ----------
-        point
-            East, north and up of the cage's centre [m].
-        below
-            Distance of ``p_below`` [m].
+        ``point``: east, north and up of the cage's centre [m].
+        ``below``: distance of ``p_below`` [m].
         """
         _check(point, below)
         return Clearance.joined(*(self._clearance(net, below) for net in self._expect(point)))
@@ -152,12 +138,8 @@ class PredictedNet:
     def along(self, path: Float[np.ndarray, "corner 3"], *, below: float = 1.0) -> PathClearance:
         """Clearance of a path of straight lines from the net, sampled all along.
 
-        Parameters
-        ----------
-        path
-            Its corners, in order [m].
-        below
-            Distance of ``p_below`` [m].
+        ``path``: its corners, in order [m].
+        ``below``: distance of ``p_below`` [m].
         """
         _check(path, below)
         point, along = sample_path(path)

@@ -75,14 +75,9 @@ def sensor_windows(
     Windows that lack a fifth of their readings, that are hardly more than noise, and in which Hs
     or Tp is not known are left out.
 
-    Parameters
-    ----------
-    pairs
-        Sound readings, not averaged.
-    noise_sd
-        Standard deviation of the instrument's noise; None estimates it [N] or [m].
-    tn_slope
-        Of the line's T-N curve [-].
+    ``pairs``: sound readings, not averaged.
+    ``noise_sd``: standard deviation of the instrument's noise; None estimates it [N] or [m].
+    ``tn_slope``: of the line's T-N curve [-].
     """
     pairs = pairs.rows(~_stuck(pairs.value))
     if len(pairs) < 2:
