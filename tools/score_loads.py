@@ -145,8 +145,12 @@ def _print_coverage(name: str, held: np.ndarray, some: np.ndarray, load: np.ndar
     ]
     every = share[np.isfinite(load)].mean()
     shown = ", ".join(f"{part:.0%}" for part in parts)
+    seas = np.random.default_rng(0).integers(len(some), size=(DRAWS, len(some)))
+    count, total = some.sum(axis=1), np.where(some, share, 0.0).sum(axis=1)
+    low, high = np.quantile(total[seas].sum(axis=1) / count[seas].sum(axis=1), (0.025, 0.975))
     print(
-        f"{name}: 95 % interval holds {share[some].mean():.1%} (by thirds {shown}; all {every:.0%})"
+        f"{name}: 95 % interval holds {share[some].mean():.1%} [{low:.1%}, {high:.1%}] by seas "
+        f"(by thirds {shown}; all {every:.0%})"
     )
 
 
