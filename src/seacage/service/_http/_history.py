@@ -56,7 +56,12 @@ def history_between(
 def _without_nodes(answer: Answer) -> Answer:
     """Drop where the nodes were, which no history shows, and which is most of its memory."""
     rows = len(answer.valid)
-    return replace(answer, node_position=np.empty((rows, 0, 3)), node_sigma=np.empty((rows, 0)))
+    return replace(
+        answer,
+        node_position=np.empty((rows, 0, 3)),
+        node_sigma=np.empty((rows, 0)),
+        node_motion=None,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

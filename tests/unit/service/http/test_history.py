@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.conventions import Flag
+from seacage.ocean import SeaState
 from seacage.records import QualityState, Sample, check_sample
-from seacage.service._http._history import history_between, telling
+from seacage.service._http._history import _without_nodes, history_between, telling
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
+from wavy import wavy_twin
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 STORM = timedelta(minutes=12 * 37)
@@ -181,3 +183,10 @@ def test_a_speed_that_failed_its_checks_is_no_storm(twin, store):
     past = history(twin, store, 10)
     assert impossible.t not in past.t
     assert NOON + STORM in past.t
+
+
+def test_a_span_of_a_twin_in_waves_keeps_no_node():
+    answer = _without_nodes(wavy_twin().predict(SeaState(current_speed=0.4, current_to=40.0)))
+    assert answer.node_motion is None
+    assert answer.line is not None
+    assert answer.node_position.size == answer.node_sigma.size == 0
