@@ -32,7 +32,7 @@ from seacage.campaigns import (
 from seacage.dynamics import extremes
 from seacage.ocean import SeaState, WaveDraw
 from seacage.records import moment, read_campaign
-from seacage.surrogates import LoadPrediction, Loads, block_bootstrap
+from seacage.surrogates import Loads, block_bootstrap
 from seacage.twin import Training, Twin, Windows, align, sensor_windows, train
 
 DAYS = 1.5
@@ -147,7 +147,7 @@ def score_bridle(
     inside = answers[0].line_in_domain
     loads = [of_line(answer.line, line).rows(inside) for answer in answers if answer.line]
     kept = windows.rows(inside)
-    short = [largest_of(one.maximum_3h, 600.0) for one in loads]
+    short = [one.maximum_3h.of_share(1 / 18) for one in loads]
     truth = {"mean": kept.mean, "std": kept.std, "maximum of 10 min": kept.maximum}
     found = {
         "mean": [one.mean.mean[:, 0] for one in loads],
@@ -196,13 +196,6 @@ def of_line(loads: Loads, line: int) -> Loads:
             name: getattr(loads, name).lines(one)
             for name in ("std", "maximum_3h", "damage_equivalent")
         },
-    )
-
-
-def largest_of(load: LoadPrediction, seconds: float) -> LoadPrediction:
-    """Largest load of a shorter time than three hours, in each row."""
-    return LoadPrediction.joined(
-        *(load.rows(slice(row, row + 1)).pooled(seconds / 10800.0) for row in range(len(load.base)))
     )
 
 

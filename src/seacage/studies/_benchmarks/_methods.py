@@ -9,7 +9,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from seacage.conventions import InputError, parse_toml
+from seacage.conventions import InputError, read_packaged_table
 from seacage.surrogates import AR1, NARGP, GaussianProcess
 
 OURS = "nargp"  # the method that the verdicts are about
@@ -77,7 +77,7 @@ def peer_methods(environment: str | Path) -> tuple[Method, ...]:
 
 
 def _methods_of(kind: str) -> list[dict[str, Any]]:
-    return parse_toml(_own("methods.toml").read_text("utf-8"), "methods.toml")[kind]
+    return read_packaged_table("seacage.studies._benchmarks", "methods.toml")[kind]
 
 
 @cache  # what this process runs is what it has loaded, whatever is edited meanwhile

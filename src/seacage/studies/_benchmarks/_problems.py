@@ -3,13 +3,12 @@
 import zlib
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from importlib import resources
 from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import InputError, parse_toml
+from seacage.conventions import InputError, read_packaged_table
 from seacage.studies._benchmarks import _functions as functions
 
 
@@ -81,8 +80,7 @@ class Problem:
 
 
 def _read() -> Iterator[Problem]:
-    text = (resources.files("seacage.studies._benchmarks") / "problems.toml").read_text("utf-8")
-    for table in parse_toml(text, "problems.toml")["problem"]:
+    for table in read_packaged_table("seacage.studies._benchmarks", "problems.toml")["problem"]:
         table["functions"] = [getattr(functions, name) for name in table["functions"]]
         given: dict[str, Any] = {k: tuple(v) if type(v) is list else v for k, v in table.items()}
         yield Problem(**given)

@@ -214,9 +214,8 @@ def _predict(loads: Loads, name: str, line: int) -> tuple[Series, Series, Series
         return mean, mean - half, mean + half
     parts = {"std": loads.std, "maximum": loads.maximum_3h, "damage": loads.damage_equivalent}
     load = parts[name].lines(np.array([line]))
-    if name == "maximum":  # of a shorter time: a Gumbel variable with a lower mode
-        shorter = np.maximum(1.0 + load.gumbel * math.log(WINDOW_SHARE), 1e-3)
-        load = replace(load, size=load.size * shorter, gumbel=load.gumbel / shorter)
+    if name == "maximum":
+        load = load.of_share(WINDOW_SHARE)
     lower, upper = load.interval(0.95)
     return load.mean[:, 0], lower[:, 0], upper[:, 0]
 

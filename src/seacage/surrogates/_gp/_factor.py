@@ -50,7 +50,8 @@ class Cholesky:
     def variance_reduction(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
         """Of each row's variance, by the cases that it varies with."""
         # Called bare: for one row, looking at the arguments first would cost as much again.
-        half = _trtrs()(self.lower, cross.T, lower=True)[0]
+        right = cross.T.astype(self.lower.dtype, copy=False)
+        half = _trtrs(self.lower.dtype.char)(self.lower, right, lower=True)[0]
         return np.einsum("nr,nr->r", half, half)[:, None]
 
     def inverse(self) -> Float[np.ndarray, "n n"]:
@@ -163,11 +164,11 @@ def _lower(
 
 
 @cache
-def _trtrs() -> Callable[..., tuple[np.ndarray, int]]:
-    """LAPACK's solution of triangular systems in float64."""
+def _trtrs(precision: str) -> Callable[..., tuple[np.ndarray, int]]:
+    """LAPACK's solution of triangular systems, in double or single precision."""
     from scipy.linalg import get_lapack_funcs
 
-    (trtrs,) = get_lapack_funcs(("trtrs",), dtype=np.float64)
+    (trtrs,) = get_lapack_funcs(("trtrs",), dtype=precision)
     return trtrs
 
 

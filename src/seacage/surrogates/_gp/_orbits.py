@@ -1,7 +1,7 @@
 """A covariance of points and all their images under a group, factorised in blocks."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -10,6 +10,12 @@ from jaxtyping import Float, Int
 from seacage.surrogates._gp._factor import Cholesky
 
 DISTINCT = 1e-6  # eigenvalues of different subspaces, at least
+
+# Noise over the variance of a point from which factors in single precision give variances. Rounding
+# leaves an error of some 1e-6 of the variance there
+SINGLE_NOISE = 5e-5
+
+Part = tuple[Float[np.ndarray, "image _"], Cholesky]  # basis and factor
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -24,7 +30,8 @@ class Orbits:
 
     # Number of the image that the second of a pair is as the first one sees it
     quotient: Int[np.ndarray, "image image"]
-    parts: tuple[tuple[Float[np.ndarray, "image _"], Cholesky], ...]  # bases and factors
+    parts: tuple[Part, ...]
+    of_variance: tuple[Part, ...]  # the same, perhaps in single precision: its time goes by memory
 
     @classmethod
     def of(
@@ -43,7 +50,12 @@ class Orbits:
             rows = len(block) * len(covariance)
             factor = Cholesky.of(block.reshape(rows, rows), np.full(rows, noise))
             parts.append((basis, factor))
-        return cls(quotient=quotient, parts=tuple(parts))
+        single = noise > SINGLE_NOISE * float(np.diag(covariance).max())
+        return cls(
+            quotient=quotient,
+            parts=tuple(parts),
+            of_variance=tuple(_to_single(one) if single else one for one in parts),
+        )
 
     def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
         """Inverse times outputs."""
@@ -67,7 +79,7 @@ class Orbits:
         """Of each row's variance, by the cases that it varies with."""
         images = cross.reshape(len(cross), len(self.quotient), -1)
         total = np.zeros((len(cross), 1))
-        for basis, factor in self.parts:
+        for basis, factor in self.of_variance:
             total += factor.variance_reduction((basis.T @ images).reshape(len(cross), -1))
         return total
 
@@ -77,6 +89,11 @@ class Orbits:
         points = len(factor.lower) // basis.shape[1]
         first = self.solve(np.eye(images * points, points)).reshape(images, points, points)
         return first[self.quotient].transpose(0, 3, 1, 2).reshape(images * points, -1)
+
+
+def _to_single(part: Part) -> Part:
+    basis, factor = part
+    return basis, replace(factor, lower=factor.lower.astype(np.float32))
 
 
 def irreducible_bases(

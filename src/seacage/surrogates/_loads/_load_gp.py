@@ -263,14 +263,15 @@ class FittedLoadGP:
         """
         height = x[:, [HEIGHT]] if hs is None else hs[:, None]
         share, lone = (self.duration / duration, 0.0) if spread else (None, None)
-        mean, std = self._answer("mean", x, noise=share)
+        inputs = case_inputs(x)
+        mean, std = self._answer("mean", inputs, noise=share)
         mean = np.maximum(mean, 0.0)  # a line never pushes
         calm = np.zeros_like(mean)
 
         def above(
             name: str, base: np.ndarray, gumbel: np.ndarray, noise: float | None
         ) -> LoadPrediction:
-            log, spread = self._answer(name, x, noise=noise)
+            log, spread = self._answer(name, inputs, noise=noise)
             return LoadPrediction(
                 base=base,
                 size=height * np.exp(log),
@@ -290,13 +291,13 @@ class FittedLoadGP:
         )
 
     def _answer(
-        self, name: str, x: Float[np.ndarray, "row feature"], *, noise: float | None
+        self, name: str, x: Float[np.ndarray, "row input"], *, noise: float | None
     ) -> tuple[Float[np.ndarray, "row line"], Float[np.ndarray, "row line"]]:
         """Mean, and standard deviation with so much of the training's noise variance.
 
         ``noise``: None for means alone.
         """
-        process, x = self.processes[name], case_inputs(x)
+        process = self.processes[name]
         if noise is None:
             mean = process.mean(x)
             return mean, np.full_like(mean, np.nan)

@@ -102,6 +102,12 @@ class LoadPrediction(Rows):
         names = ("base", "size", "log_std", "gumbel")
         return replace(self, **{name: getattr(self, name)[:, some] for name in names})
 
+    def of_share(self, share: float) -> Self:
+        """Largest load of a share of the three hours, in each row: Gumbel with a lower mode."""
+        scale = self.gumbel * self.size
+        size = np.maximum(self.size + scale * math.log(share), 0.0)
+        return replace(self, size=size, gumbel=scale / np.maximum(size, 1e-9))
+
     def pooled(self, share: float) -> Self:
         """Largest load of a time in which the cases follow one another, as one row.
 

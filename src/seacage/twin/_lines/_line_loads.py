@@ -3,10 +3,10 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from seacage.surrogates import Domain, FittedLoadGP, FittedMotionGP, Loads, Prediction, sea_features
-from seacage.twin._lines._site_waves import SiteWaves, mix
+from seacage.twin._lines._site_waves import SiteWaves, mean_over_members, mix
 from seacage.twin._metocean import Metocean
 
 NO_WAVES = "Hs, wave direction and Tp are not all known; loads in waves need them."
@@ -67,23 +67,36 @@ class LineLoads:
         ``spread`` other standard deviations and intervals are NaN, and the answer costs a small
         part. With it they are wider outside the domain, by how far the loads move beyond its edge.
         """
-        reason = np.where(np.isfinite(water.table).all(axis=1), "", NO_WAVES)
-        if self.waves is None or not np.any(reason):
+        if self.waves is None or np.isfinite(water.table).all():
             loads, inside = self._predict(water, duration, spread=spread)
         else:
-            no_waves, no_tp = self.waves.gaps(water)
-            members, row = self.waves.members(water)
+            no_waves = self.gaps(water)[0]
+            members, row = self.members(water)
             loads, near = self._predict(members, duration, spread=spread)
             std = loads.mean.std
             if not spread:
                 std = np.broadcast_to(np.where(no_waves[row, None], 0.0, np.nan), std.shape)
             mixed = mix(replace(loads, mean=Prediction(mean=loads.mean.mean, std=std)), row)
             loads = replace(mixed.known(~no_waves), mean=mixed.mean)
-            inside = np.bincount(row, near) >= 0.5 * np.bincount(row)
-            reason = np.where(no_waves, ANY_WAVES.format(self.waves.origin), reason)
-            reason = np.where(no_tp, ANY_TP.format(self.waves.origin), reason)
-        reason = np.where(inside | (reason == NO_WAVES), reason, NOT_TRAINED)
-        return loads, inside, tuple(reason.tolist())
+            inside = mean_over_members(near, row) >= 0.5
+        return loads, inside, self.reasons(water, inside)
+
+    def members(self, water: Metocean) -> tuple[Metocean, Int[np.ndarray, " member"]]:
+        """Seas that each row of water may be, and the row of each; itself where there is no gap."""
+        return self.waves.members(water) if self.waves else (water, np.arange(len(water)))
+
+    def gaps(self, water: Metocean) -> tuple[Bool[np.ndarray, " case"], Bool[np.ndarray, " case"]]:
+        """Rows whose height or direction, and those whose period alone is taken from the site's."""
+        none = np.zeros(len(water), dtype=bool)
+        return self.waves.gaps(water) if self.waves else (none, none)
+
+    def reasons(self, water: Metocean, inside: Bool[np.ndarray, " case"]) -> tuple[str, ...]:
+        """One sentence for each row whose loads are none, of other waves or extrapolated."""
+        reason = np.where(np.isfinite(water.table).all(axis=1), "", NO_WAVES)
+        if self.waves is not None:
+            for gap, sentence in zip(self.gaps(water), (ANY_WAVES, ANY_TP), strict=True):
+                reason = np.where(gap, sentence.format(self.waves.origin), reason)
+        return tuple(np.where(inside | (reason == NO_WAVES), reason, NOT_TRAINED).tolist())
 
     def node_motion(self, water: Metocean) -> Float[np.ndarray, "case node 2"] | None:
         """Standard deviations of the nodes' places, horizontally and upwards [m]; None without.
@@ -93,22 +106,17 @@ class LineLoads:
         """
         if self.motion is None:
             return None
-        row, seas = np.arange(len(water)), self.hold(water)
-        if self.waves is not None and np.any(self.waves.gaps(water)[1]):
-            members, row = self.waves.members(water)
-            seas = self.hold(members)
+        no_waves = self.gaps(water)[0][:, None]
+        in_waves = Metocean.from_table(np.where(no_waves, np.nan, water.table))
+        members, row = self.members(in_waves)
+        seas = self.hold(members)
         variance = self.motion.mean(seas.x, hs=seas.hs) ** 2
-        start = np.flatnonzero(np.diff(row, prepend=-1))
-        count = np.diff(start, append=len(row))[:, None, None]
-        motion = np.sqrt(np.add.reduceat(variance, start, axis=0) / count)
-        motion[~np.isfinite(water.table[:, :5]).all(axis=1)] = np.nan
-        if self.waves is None:
-            motion[~np.isfinite(water.tp)] = np.nan
-        return motion
+        variance[~seas.known] = np.nan
+        return np.sqrt(mean_over_members(variance, row))
 
     def assumes_tp(self, water: Metocean) -> Bool[np.ndarray, " case"]:
         """Rows whose period is not known and is taken from the site's waves."""
-        return self.waves.gaps(water)[1] if self.waves else np.zeros(len(water), dtype=bool)
+        return self.gaps(water)[1]
 
     def _predict(
         self, water: Metocean, duration: float, *, spread: bool

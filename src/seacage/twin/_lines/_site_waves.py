@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.surrogates import LoadPrediction, Loads
 from seacage.twin._metocean import Metocean
@@ -63,6 +63,15 @@ class SiteWaves:
         return np.sqrt(hs) * np.quantile(ratio, (np.arange(PERIODS) + 0.5) / PERIODS)
 
 
+def mean_over_members(
+    values: Shaped[np.ndarray, "member *part"], row: Int[np.ndarray, " member"]
+) -> Float[np.ndarray, "case *part"]:
+    """Mean over the members of each row; of truths their share."""
+    start = np.flatnonzero(np.diff(row, prepend=-1))
+    count = np.diff(start, append=len(row)).reshape(-1, *(1,) * (values.ndim - 1))
+    return np.add.reduceat(values, start, axis=0, dtype=float) / count
+
+
 def mix(loads: Loads, row: Int[np.ndarray, " member"]) -> Loads:
     """Loads of each row over its members, all as likely.
 
@@ -73,7 +82,7 @@ def mix(loads: Loads, row: Int[np.ndarray, " member"]) -> Loads:
     count = np.diff(start, append=len(row))[:, None]
 
     def over(values: Float[np.ndarray, "member line"]) -> Float[np.ndarray, "case line"]:
-        return np.add.reduceat(values, start, axis=0) / count
+        return mean_over_members(values, row)
 
     def scatter(values: Float[np.ndarray, "member line"]) -> Float[np.ndarray, "case line"]:
         return over((values - over(values)[row]) ** 2)

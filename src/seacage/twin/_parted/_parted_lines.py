@@ -4,12 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float, Int
+from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.surrogates import Domain, LoadChange, Symmetry
 from seacage.twin._lines._line_loads import HeldSeas, LineLoads
+from seacage.twin._lines._site_waves import mean_over_members
 from seacage.twin._metocean import Metocean
 from seacage.twin._parted._if_parted import IfParted
 
@@ -65,7 +66,7 @@ class PartedLines:
                     f"If {name!r} parted: this twin has learned no such line. It has: "
                     f"{', '.join(sorted(known, key=whole.names.index))}."
                 )
-        members, row, no_waves = _members(whole, water)
+        members, row = whole.members(water)
         seas = whole.hold(members)
         loads = whole.surrogate.predict(seas.x, hs=seas.hs, spread=False)
         before = np.stack([loads.mean.mean, loads.maximum_3h.mean])
@@ -78,12 +79,11 @@ class PartedLines:
                 inside[:, at] = seas.inside & kind.domain.contains(seas.places)
                 load[:, :, at], state[:, :, at] = self._after(kind, image, seas, before)
                 load[:, :, at, line] = 0.0
-        first = np.flatnonzero(np.diff(row, prepend=-1))
-        count = np.diff(first, append=len(row))[:, None]
-        inside = np.add.reduceat(inside, first, axis=0, dtype=float) >= 0.5 * count
-        load = np.add.reduceat(load, first, axis=1) / count[..., None]
-        state = np.add.reduceat(state, first, axis=1) / count
-        load[:, ~inside], state[:, ~inside], load[1, no_waves] = np.nan, np.nan, np.nan
+        inside = mean_over_members(inside, row) >= 0.5
+        load, state = (
+            np.stack([mean_over_members(one, row) for one in part]) for part in (load, state)
+        )
+        load[:, ~inside] = state[:, ~inside] = load[1, whole.gaps(water)[0]] = np.nan
         return IfParted(
             cage=cage,
             parted=tuple(wanted),
@@ -94,7 +94,7 @@ class PartedLines:
             maximum_3h=load[1],
             **dict(zip(STATE, state, strict=True)),
             in_domain=inside,
-            reason=whole.predict(water, spread=False)[2],
+            reason=whole.reasons(water, mean_over_members(seas.inside, row) >= 0.5),
         )
 
     def _places(self, names: Sequence[str]) -> Iterator[tuple[PartedKind, int, int]]:
@@ -122,12 +122,3 @@ class PartedLines:
         mean, maximum = before[:, :, there]
         mean, maximum, state = kind.surrogate.predict(x, hs=seas.hs, mean=mean, maximum=maximum)
         return np.stack([mean, maximum])[:, :, here], state.T
-
-
-def _members(
-    whole: LineLoads, water: Metocean
-) -> tuple[Metocean, Int[np.ndarray, " member"], Bool[np.ndarray, " case"]]:
-    """Seas that each row of water may be, the row of each, and rows of unknown waves."""
-    if whole.waves is None:
-        return water, np.arange(len(water)), np.zeros(len(water), dtype=bool)
-    return *whole.waves.members(water), whole.waves.gaps(water)[0]

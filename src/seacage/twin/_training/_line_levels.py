@@ -60,8 +60,7 @@ def train_line_level_2(
     ratio, error = LoadRatio.fit(np.log(windows.std / std), block, variables)
     of_std = np.log(windows.std / std) - error  # held-out log ratio of each window
     largest = low.maximum_3h.lines(np.array([line]))
-    shorter = 1.0 + largest.gumbel[:, 0] * math.log(WINDOW_S / THREE_HOURS)
-    above = largest.size[:, 0] * shorter - largest.offset
+    above = largest.of_share(WINDOW_S / THREE_HOURS).size[:, 0] - largest.offset
     peak, of_peak = _follow(windows.maximum - windows.mean, above, of_std, block)
     damage, _ = _follow(windows.damage, low.damage_equivalent.mean[:, line], of_std, block)
     if not takes_mean and ratio == LoadRatio() and peak is None and damage is None:

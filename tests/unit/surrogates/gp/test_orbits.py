@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.surrogates._gp._factor import Cholesky
-from seacage.surrogates._gp._orbits import Orbits, irreducible_bases
+from seacage.surrogates._gp._orbits import SINGLE_NOISE, Orbits, irreducible_bases
 
 NOISE = 1e-3
 
@@ -45,6 +45,20 @@ def test_blocks_answer_as_the_whole_covariance(fold: int, *, mirror: bool):
     close(blocks.observations(blocks.solve(y)), y)
     close(blocks.variance_reduction(cross), whole.variance_reduction(cross))
     close(blocks.inverse(), whole.inverse())
+
+
+def test_variances_are_in_single_precision_where_the_noise_is_above_its_rounding():
+    turn = turns(4, mirror=True)
+    points = np.random.default_rng(2).standard_normal((40, 2))
+    x = np.concatenate([points @ one.T for one in turn])
+    new = np.random.default_rng(3).standard_normal((20, 2))
+    for noise, kind in ((2.0 * SINGLE_NOISE, np.float32), (0.5 * SINGLE_NOISE, np.float64)):
+        blocks = Orbits.of(covariances(points, x), noise, quotients(turn))
+        assert {factor.lower.dtype for _, factor in blocks.of_variance} == {np.dtype(kind)}
+        left = 1.0 - blocks.variance_reduction(covariances(new, x))
+        whole = Cholesky.of(covariances(x, x), np.full(len(x), noise))
+        exact = 1.0 - whole.variance_reduction(covariances(new, x))
+        np.testing.assert_allclose(left, exact, rtol=0.02)
 
 
 def test_a_square_with_mirrors_has_six_subspaces():

@@ -241,7 +241,8 @@ def test_without_one_of_its_blocks_the_answer_would_be_another(fitted: FittedLoa
     process, x = fitted.processes["std"], case_inputs(draw_seas(100, 24))
     posterior = process.posterior
     assert isinstance(posterior.factor, Orbits)
-    fewer = replace(posterior, factor=replace(posterior.factor, parts=posterior.factor.parts[1:]))
+    of_variance = posterior.factor.of_variance[1:]
+    fewer = replace(posterior, factor=replace(posterior.factor, of_variance=of_variance))
     wrong = replace(process, members=(fewer,)).predict(x).std
     assert np.quantile(wrong / process.predict(x).std, 0.1) > 1.1
 
