@@ -58,7 +58,8 @@ def map_tasks(
         with _clean_start():
             try:
                 futures = {pool.submit(_at, at, work, task): task for at, task in enumerate(tasks)}
-            except OSError as error:  # the pool broke, and closed its pipes, as a worker was begun
+            except (OSError, ValueError) as error:
+                # The pool broke, and closed its pipes, as a worker was begun.
                 raise BrokenProcessPool from error
         pending = set(futures)
         while pending:
