@@ -237,6 +237,18 @@ class SinkerTube(_Part):
     displaced: float = quantity("m3_m", "volume", default=0.1257)
     added_mass_coefficient: float = quantity("", "added mass over displaced mass", default=1.0)
     hung_below: float = quantity("m", "below the cylinder's edge, where it hangs on its own ropes")
+    lost_from: float | None = quantity(
+        "deg", "compass bearing, heading 0, from which on its weight is lost", default=None
+    )
+    lost_to: float | None = quantity("deg", "up to which it is, clockwise", default=None)
+
+    def __post_init__(self) -> None:
+        super(SinkerTube, self).__post_init__()
+        if (self.lost_from is None) != (self.lost_to is None):
+            raise InputError(
+                "Cage, SinkerTube: of lost_from_deg and lost_to_deg one is missing. Give both, or "
+                "none for a tube that is whole."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

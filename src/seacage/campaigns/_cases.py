@@ -41,6 +41,8 @@ class Simulator:
         equilibrium in its current, with the waves' mean loads.
     law
         Load law of the netting; "morison", twine by twine, in time only.
+    skin_friction, lift_factor
+        Changes of a screen law, as for ``settle``.
     mooring
         "catenary": frame ropes, buoys and anchor lines; or "springs" under the frame's corners.
     ramp, spin_up
@@ -61,6 +63,8 @@ class Simulator:
 
     method: Literal["simulate", "settle"] = "simulate"
     law: MovingLaw = "kristiansen-faltinsen"
+    skin_friction: float | None = None
+    lift_factor: float = 1.0
     mooring: Mooring = "catenary"
     ramp: float = 60.0
     spin_up: float = 300.0
@@ -94,7 +98,9 @@ class Simulator:
         """What to write into a store, with units, beside ``law`` and ``method``."""
         drawn = {"mooring_drawn": 1} if self.draw_mooring else {}
         without = {"parted": ", ".join(self.parted)} if self.parted else {}
-        moored: dict[str, Any] = {"mooring": self.mooring, **drawn, **without}
+        tuned = {} if self.skin_friction is None else {"skin_friction": self.skin_friction}
+        tuned |= {} if self.lift_factor == 1.0 else {"lift_factor": self.lift_factor}
+        moored: dict[str, Any] = {"mooring": self.mooring, **tuned, **drawn, **without}
         if not self.in_time:
             return moored
         return moored | {
@@ -171,7 +177,14 @@ def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
     by, cage = block.simulator, _cage(block.cage_toml)
     assert by.law != "morison"  # the simulator refused it
     response = settle(
-        cage, block.seas, law=by.law, mooring=by.mooring, parted=by.parted, mean_waves=True
+        cage,
+        block.seas,
+        law=by.law,
+        skin_friction=by.skin_friction,
+        lift_factor=by.lift_factor,
+        mooring=by.mooring,
+        parted=by.parted,
+        mean_waves=True,
     )
     names = ("node_position", "bridle_tension", "net_force", "volume", "residual", "result")
     return {name: getattr(response, name) for name in names}, None

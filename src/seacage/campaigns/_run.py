@@ -33,6 +33,8 @@ _IDENTITY = {
     "cage": "cage",
     "plan_sha256": "plan",
     "law": "load law",
+    "skin_friction": "skin friction",
+    "lift_factor": "lift factor",
     "method": "method",
     "product_version": "version of seacage",
     "physics": "revision of the physics",

@@ -27,11 +27,13 @@ from seacage.campaigns._virtual_field._simulated import (
 )
 from seacage.campaigns._virtual_field._timetable import Timetable, reading_times
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.campaigns._virtual_field._weather import current_at_cage
+from seacage.campaigns._virtual_field._weather import current_at_cage, shear
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import FieldRecord, Record, TrueMeans
 
 _DAY = 86400.0
+# Of a shear that grows linearly with depth, mean over the net's depth [-]
+_MEAN_SHEAR = 0.5
 _EXACT = "These are the sensors without their errors."
 FieldMethod = Literal["simulate", "settle"]
 
@@ -81,7 +83,8 @@ def virtual_field(
     Simulated, the cage moves in waves and in a current that changes with time and depth, under
     growth. Settled, it answers at once: its equilibria are interpolated on a grid of currents
     and growths, with the error on the record's notes; waves, depth profile and inertia are left
-    out, and the buoy's stream passes through as it came.
+    out, of a shear its mean over the net's depth is kept, and the buoy's stream passes through as
+    it came.
 
     Parameters
     ----------
@@ -232,6 +235,7 @@ def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
     timetable = request.timetable
     every = f"a reading every {request.every:g} s"
     notes = [f"Virtual field, seed {request.seed}, simulated in time, {every}."]
+    notes += [request.hidden.title] if request.hidden.title else []
     if timetable.one_in > 1:
         notes.append(
             f"Of {timetable.one_in} stretches of {timetable.stretch:g} s one was simulated, and "
@@ -259,6 +263,9 @@ def _settle(
     rng, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
     velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
+    velocity = velocity + _MEAN_SHEAR * shear(
+        hidden.profile, len(seconds), float(seconds[1] - seconds[0]), seed=seed
+    )
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
     truth = FieldRecord(
         cage=cage.name,
@@ -266,7 +273,11 @@ def _settle(
         sensors=_exact_sensors(cage, time, exact),
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
-        notes=(f"Virtual field, seed {seed}.", *_interpolation_notes(cage, error)),
+        notes=(
+            f"Virtual field, seed {seed}.",
+            *((hidden.title,) if hidden.title else ()),
+            *_interpolation_notes(cage, error),
+        ),
     )
     seen = {
         name: sense(sensor, hidden, rng)

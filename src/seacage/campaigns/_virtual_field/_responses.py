@@ -7,7 +7,6 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import Simulator
 from seacage.campaigns._run import campaign_key, run_share
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
@@ -110,7 +109,7 @@ def true_responses(
     others = Plan.listed((still, *between.seas), name="still and held out")
     runs = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
     total = sum(len(plan) for _, plan in runs)
-    by, report, before = Simulator(method="settle", law=hidden.law), progress or no_progress, 0
+    by, report, before = hidden.equilibria, progress or no_progress, 0
 
     def report_part(_stage: str, done: int, _part: int) -> None:
         report("virtual field", before + done, total)

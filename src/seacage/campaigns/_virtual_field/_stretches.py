@@ -30,6 +30,8 @@ class TrueCage:
     refined: int  # how much finer it is than drawn
     # Of netting and ropes, as ``follow`` takes them
     law: MovingLaw
+    skin_friction: float | None
+    lift_factor: float
     stiffening: tuple[float, float]
     watched: tuple[int, ...]  # the depth sensors' nodes
     drawn: tuple[int, ...]  # nodes of the drawing's mesh
@@ -44,6 +46,8 @@ class TrueCage:
             toml=true.to_toml(),
             refined=times,
             law=hidden.law,
+            skin_friction=hidden.skin_friction,
+            lift_factor=hidden.lift_factor,
             stiffening=(hidden.lines.stiffer_from_strain, hidden.lines.stiffer_share),
             watched=tuple(int(drawn[sensor.node]) for sensor in cage.depth_sensors),
             drawn=tuple(drawn.tolist()),
@@ -198,6 +202,8 @@ def simulate_group(group: Group) -> list[Passed]:
             spin_up=timetable.spin_up,
             time_step=timetable.time_step,
             law=group.cage.law,
+            skin_friction=group.cage.skin_friction,
+            lift_factor=group.cage.lift_factor,
             stiffening=group.cage.stiffening,
             watched=group.cage.watched,
             damaged=group.stretches[0].damaged,

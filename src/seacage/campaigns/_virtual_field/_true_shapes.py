@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
+from seacage.campaigns._cases import CaseBlock, answer_block, software_version
 from seacage.campaigns._current import generated_current
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
@@ -130,7 +130,7 @@ def _turn_current(buoy: Record, degrees: float) -> Record:
 
 def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[CaseBlock, np.ndarray]:
     """Cases that share a cage, a campaign's block at a time, and their rows."""
-    by, blocks, before = Simulator(method="settle", law=moments[0].hidden.law), {}, 0
+    by, blocks, before = moments[0].hidden.equilibria, {}, 0
     for one in moments:
         for growth in np.unique(one.growth):
             toml = one.hidden.true_cage(cage, float(growth)).to_toml()

@@ -2,7 +2,7 @@
 
 import hashlib
 import math
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass, replace
 from importlib import resources
 from pathlib import Path
 from typing import Any, Literal, Self, get_args, get_origin
@@ -11,8 +11,12 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
+from seacage.campaigns._cases import Simulator
+from seacage.campaigns._virtual_field._family import Water, draw_truth
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.dynamics import Law
+
+_OWN = resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,10 +39,11 @@ class FoulingTruth:
     growth_days: float
     cleaned_days: tuple[float, ...]
     soft_drag_factor: float
+    age_days: float = 0.0  # since the last cleaning, when the record begins
 
     def grown(self, day: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """Growth on a day of the record, 0 just cleaned, 1 grown out [-]."""
-        begun = np.array([0.0, *sorted(self.cleaned_days)])
+        begun = np.array([-self.age_days, *sorted(self.cleaned_days)])
         age = day - begun[np.searchsorted(begun[1:], day, side="right")]
         return 1.0 / (1.0 + np.exp(-(age - self.half_grown_days) / self.growth_days))
 
@@ -63,10 +68,11 @@ class BridlesTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrameTruth:
-    """Bounds of the slack of the frame's ropes."""
+    """Bounds of the slack of the frame's ropes, and how far its corners are from their places."""
 
     slack_least_m: float
     slack_most_m: float
+    corner_sd_m: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +81,41 @@ class CollarTruth:
 
     brackets_least: int
     brackets_most: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BuiltTruth:
+    """Parts over those drawn [-]; of the tube's weight, the share lost on one side."""
+
+    twine_diameter: float = 1.0
+    tube_weight: float = 1.0
+    tip_weight: float = 1.0
+    rope_stiffness: float = 1.0
+    anchor_pretension: float = 1.0
+    buoyancy: float = 1.0
+    tube_lost: float = 0.0
+
+    def build(self, cage: Cage) -> Cage:
+        """The cage with its parts as they were built."""
+        bridles, frame, anchors = cage.bridles, cage.frame, cage.anchor_lines
+        lost = self.tube_lost > 0.0
+        return cage.altered(
+            netting={"twine_diameter_m": cage.netting.twine_diameter * self.twine_diameter},
+            sinker_tube={
+                "weight_n_m": cage.sinker_tube.weight * self.tube_weight,
+                **({"lost_from_deg": 0.0, "lost_to_deg": 360.0 * self.tube_lost} if lost else {}),
+            },
+            tip={"weight_n": cage.tip.weight * self.tip_weight},
+            bridles={"rope_axial_stiffness_n": bridles.rope_axial_stiffness * self.rope_stiffness},
+            frame={
+                "rope_axial_stiffness_n": frame.rope_axial_stiffness * self.rope_stiffness,
+                "buoy_buoyancy_n": frame.buoy_buoyancy * self.buoyancy,
+            },
+            anchor_lines={
+                "rope_axial_stiffness_n": anchors.rope_axial_stiffness * self.rope_stiffness,
+                "pretension_n": anchors.pretension * self.anchor_pretension,
+            },
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,7 +128,10 @@ class LinesTruth:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfileTruth:
-    """Profile of the current over depth, and its slow random change."""
+    """Profile of the current over depth, and its slow random change.
+
+    ``shear_sd_m_s``: of each component of what is added at the deepest, in proportion above it.
+    """
 
     depth_m: tuple[float, ...]
     factor: tuple[float, ...]
@@ -95,6 +139,8 @@ class ProfileTruth:
     factor_sd: float
     turned_sd_deg: float
     memory_s: float
+    shear_sd_m_s: float = 0.0
+    shear_memory_s: float = 7200.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,10 +220,14 @@ class TruthParameters:
     """The truth behind a virtual field, which no training may read.
 
     ``TruthParameters.read()`` is the one of cage ``ace``; its file says what each number means.
+    ``TruthParameters.of_family(7)`` is one of many, drawn by its number.
     """
 
     law: Law
     seed: int
+    skin_friction: float | None = None
+    lift_factor: float = 1.0
+    built: BuiltTruth = field(default_factory=BuiltTruth)
     netting: NettingTruth
     fouling: FoulingTruth
     bridles: BridlesTruth
@@ -192,6 +242,8 @@ class TruthParameters:
     depth: DepthTruth
     outages: OutagesTruth
     sha256: str
+    # What the notes of its records say of it
+    title: str = ""
 
     @classmethod
     def read(cls, path: str | Path | None = None) -> Self:
@@ -199,16 +251,47 @@ class TruthParameters:
 
         Raises InputError: no TOML, or a key that is unknown, missing or no finite number.
         """
-        own = resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml"
-        text = own.read_text("utf-8") if path is None else read_text(path)
-        table = parse_toml(text, f"{path or own}")
-        sha256 = hashlib.sha256(text.encode()).hexdigest()
-        return _build(cls, {**table, "sha256": sha256}, where=f"{path or own}")
+        text = _OWN.read_text("utf-8") if path is None else read_text(path)
+        table = parse_toml(text, f"{path or _OWN}")
+        return _build(cls, {**table, "sha256": _sha256(text)}, where=f"{path or _OWN}")
+
+    @classmethod
+    def of_family(cls, number: int, *, water: Water = "tame", unseal: bool = False) -> Self:
+        """One of a family of hidden cages and waters, drawn from the ranges of ``family.toml``.
+
+        Parameters
+        ----------
+        number
+            1 to 60 for development; 101 to 110 are sealed, so that no setting is ever fitted to
+            them; 201 to 204 lie outside the ranges: another screen law, a current sheared twice,
+            an uneven frame, a sinker tube that lost its weight on one side.
+        water
+            "tame" as on the shelf, or "coastal", with the shear that two ADCPs measured. Of one
+            number both have the same cage.
+        unseal
+            Give a sealed one.
+
+        Raises InputError: a number or a water that is none, or one that is sealed.
+        """
+        text = _OWN.read_text("utf-8")
+        table, drawn_from = draw_truth(parse_toml(text, f"{_OWN}"), number, water, unseal=unseal)
+        named = f"{_sha256(text)}, {drawn_from}, truth {number}, {water}"
+        identity = {"sha256": _sha256(named), "title": f"Truth {number}, {water} water."}
+        return _build(cls, table | identity, where=f"Truth {number}")
 
     def drawn(self, seed: int) -> Self:
         """The same ranges, from which another seed draws the cage; the hash names the seed too."""
-        named = f"{self.sha256}, seed {seed}"
-        return replace(self, seed=seed, sha256=hashlib.sha256(named.encode()).hexdigest())
+        return replace(self, seed=seed, sha256=_sha256(f"{self.sha256}, seed {seed}"))
+
+    @property
+    def equilibria(self) -> Simulator:
+        """What gives the true cage's equilibria."""
+        return Simulator(
+            method="settle",
+            law=self.law,
+            skin_friction=self.skin_friction,
+            lift_factor=self.lift_factor,
+        )
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
@@ -246,6 +329,7 @@ class TruthParameters:
         brackets = rng.integers(
             self.collar.brackets_least, self.collar.brackets_most, endpoint=True
         )
+        cage = self.built.build(self._move_corners(cage, rng))
         return cage.altered(
             netting={"elastic_modulus_pa": self.netting.elastic_modulus_pa},
             bridles={
@@ -257,11 +341,31 @@ class TruthParameters:
             collar={"brackets": int(brackets)} if cage.collar.brackets else {},
         )
 
+    def _move_corners(self, cage: Cage, rng: np.random.Generator) -> Cage:
+        if self.frame.corner_sd_m == 0.0:
+            return cage
+        east, north = (
+            cage.frame.corners
+            + rng.normal(scale=self.frame.corner_sd_m, size=cage.frame.corners.shape)
+        ).T
+        frame = replace(
+            cage.frame,
+            side=None,
+            corners_east=tuple(east.tolist()),
+            corners_north=tuple(north.tolist()),
+        )
+        return replace(cage, frame=frame)
+
 
 def _build(kind: Any, table: dict[str, Any], *, where: str) -> Any:
     """A frozen value from a table that has its keys, all of them and no other."""
-    kinds = {field.name: field.type for field in fields(kind)}
-    wrong = sorted(kinds.keys() ^ table.keys())
+    kinds = {one.name: one.type for one in fields(kind)}
+    needed = {
+        one.name
+        for one in fields(kind)
+        if one.default is MISSING and one.default_factory is MISSING
+    }
+    wrong = sorted((needed - table.keys()) | (table.keys() - kinds.keys()))
     if wrong:
         raise InputError(
             f"{where}: the key {wrong[0]!r} is {'missing' if wrong[0] in kinds else 'unknown'}. "
@@ -272,6 +376,10 @@ def _build(kind: Any, table: dict[str, Any], *, where: str) -> Any:
     )
 
 
+def _sha256(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
 def _value(kind: Any, value: Any, *, where: str) -> Any:
     if is_dataclass(kind):
         return _build(kind, value if isinstance(value, dict) else {}, where=where)
@@ -279,6 +387,8 @@ def _value(kind: Any, value: Any, *, where: str) -> Any:
         return tuple(_value(get_args(kind)[0], item, where=where) for item in value)
     if get_origin(kind) is Literal and value not in get_args(kind):
         raise InputError(f"{where}: {value!r} is none of {', '.join(get_args(kind))}.")
-    if kind in (int, float) and not (type(value) in (int, float) and math.isfinite(value)):
+    if kind in (int, float, float | None) and not (
+        type(value) in (int, float) and math.isfinite(value)
+    ):
         raise InputError(f"{where}: {value!r} is no finite number.")
     return value

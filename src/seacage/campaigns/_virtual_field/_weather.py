@@ -76,6 +76,7 @@ class Weather(AbstractWeather):
 
     surface: Even  # current near the surface, (east, north) [m/s]
     swing: Even  # how far the profile's factor and turn are off, over their standard deviations [-]
+    shear: Even | None  # (east, north), what the deepest level has beside it [m/s]
     sea: TrueWaves  # the waves
     # How the current changes with depth, and how growth adds solidity
     profile: ProfileTruth
@@ -98,7 +99,8 @@ class Weather(AbstractWeather):
             factor=tuple(np.maximum(factor, 0.0).tolist()),
             turned=tuple(turn.tolist()),
         )
-        return profile.velocity(self.surface.at(second))
+        velocity = profile.velocity(self.surface.at(second))
+        return velocity if self.shear is None else velocity + np.outer(deep, self.shear.at(second))
 
     def waves(self, second: float) -> Waves:
         """For the minute from then on, whose time 0 is then."""
@@ -133,6 +135,7 @@ class Weather(AbstractWeather):
             self,
             surface=self.surface.between(start, end),
             swing=self.swing.between(start, end),
+            shear=None if self.shear is None else self.shear.between(start, end),
             sea=self.sea.between(start, end),
         )
 
@@ -167,6 +170,7 @@ def true_weather(
     minutes = np.arange(math.ceil(span / _MINUTE) + 1) * _MINUTE
     memory = hidden.profile.memory_s
     swing = wandering(deep, len(minutes), sd=1.0, step_s=_MINUTE, memory_s=memory)
+    sheared = shear(hidden.profile, len(minutes), _MINUTE, seed=seed)
     components = 0 if waves is None else hidden.waves.components
     draw = WaveDraw.sample(surface, components=components, spreading=hidden.waves.spreading)
     sea = _sea(waves, buoy.time[0], minutes)
@@ -174,6 +178,7 @@ def true_weather(
     return Weather(
         surface=current,
         swing=Even(step=_MINUTE, values=swing),
+        shear=Even(step=_MINUTE, values=sheared) if hidden.profile.shear_sd_m_s else None,
         sea=TrueWaves(
             draw=draw,
             sea=Even(step=_MINUTE, values=sea),
@@ -183,6 +188,15 @@ def true_weather(
         profile=hidden.profile,
         fouling=hidden.fouling,
     )
+
+
+def shear(
+    profile: ProfileTruth, steps: int, step_s: float, *, seed: int
+) -> Float[np.ndarray, "step 2"]:
+    """What the deepest level has beside the profile of the current, (east, north) [m/s]."""
+    rng = np.random.default_rng([seed, *b"shear"])
+    sd, memory = profile.shear_sd_m_s, profile.shear_memory_s
+    return wandering(rng, steps, sd=sd, step_s=step_s, memory_s=memory)
 
 
 def _sea(waves: Record | None, start: np.datetime64, seconds: PerRow) -> Float[np.ndarray, "row 4"]:

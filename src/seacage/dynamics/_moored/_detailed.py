@@ -11,7 +11,7 @@ from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import is_rope
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._moored._pretension import assemble
-from seacage.dynamics._parts._assembly import Assembly, Bars
+from seacage.dynamics._parts._assembly import Assembly, Bars, tube_kept
 
 BoolPerPanel = Bool[np.ndarray, " panel"]
 IntPartEnd = Int[np.ndarray, "part end"]
@@ -72,7 +72,7 @@ def _tube_hung(cage: Cage, base: Assembly) -> Assembly:
     return replace(
         base,
         position=np.vstack([base.position, below]),
-        weight=_shift(base.weight, ring, -tube.weight * arc),
+        weight=_shift(base.weight, ring, -tube.weight * arc * tube_kept(cage)),
         mass=_shift(base.mass, ring, lump),
         water_mass=_shift(base.water_mass, ring, water + tube.added_mass_coefficient * water),
         fixed=np.append(base.fixed, np.zeros(len(ring), dtype=bool)),

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, MooringLines, mooring_lines
-from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows
+from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows, compass
 from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
 
 IntPerBridle = Int[np.ndarray, " bridle"]
@@ -393,12 +393,23 @@ def _weight(cage: Cage, position: Node3, panels: Panels) -> PerNode:
     weight = np.zeros(len(position))
     submerged = (cage.netting.mass - cage.netting.displaced) * GRAVITY
     np.add.at(weight, panels.corners, -submerged * panels.area[:, None] * panels.share)
-    weight[cage.ring_nodes(cage.tube_ring)] -= cage.sinker_tube.weight * _arc(cage, cage.tube_ring)
+    tube = cage.sinker_tube.weight * _arc(cage, cage.tube_ring) * tube_kept(cage)
+    weight[cage.ring_nodes(cage.tube_ring)] -= tube
     weight[cage.ring_nodes(0)] -= (
         cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
     )
     weight[cage.bottom_node] -= cage.tip.weight
     return weight
+
+
+def tube_kept(cage: Cage) -> PerSpoke:
+    """Share of the sinker tube's weight that is there at each of its nodes, 0 or 1 [-]."""
+    tube = cage.sinker_tube
+    if tube.lost_from is None or tube.lost_to is None:
+        return np.ones(cage.spokes)
+    bearing = compass(cage.design_position[cage.ring_nodes(cage.tube_ring), :2]) - cage.heading
+    lost = (bearing - tube.lost_from) % 360.0 <= (tube.lost_to - tube.lost_from) % 360.0
+    return np.where(lost, 0.0, 1.0)
 
 
 def _masses(cage: Cage, position: Node3, panels: Panels) -> tuple[PerNode, PerNode]:

@@ -12,7 +12,7 @@ from seacage.conventions import InputError, Progress, count_times
 from seacage.dynamics._kernel._march import REFRESH
 from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._detailed import Damage
-from seacage.dynamics._physics._screens import MovingLaw
+from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._time._segments import Build, Course, SegmentBatch
 from seacage.dynamics._time._weather import AbstractWeather
 
@@ -40,6 +40,8 @@ def follow(
     spin_up: float = 300.0,
     time_step: float = 0.001,
     law: MovingLaw = "loland",
+    skin_friction: float | None = None,
+    lift_factor: float = 1.0,
     stiffening: tuple[float, float] = (0.01, 0.5),
     watched: Sequence[int] = (),
     damaged: tuple[Damage, ...] = (),
@@ -73,6 +75,8 @@ def follow(
     law
         Of the netting. Twine by twine ("morison"), the facing half meets what momentum leaves
         of the current.
+    skin_friction, lift_factor
+        As for ``simulate``.
     stiffening
         As in ``full_assembly``: a strain, and the ropes' stiffness beyond it over the first.
     watched
@@ -91,7 +95,8 @@ def follow(
     """
     course = _course(duration, every, spin_up, shape_every, time_step)
     _check(weathers, starts)
-    build = Build(cage=cage, law=law, stiffening=stiffening, refined=refined)
+    tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
+    build = Build(cage=cage, law=law, tuning=tuning, stiffening=stiffening, refined=refined)
     segments = SegmentBatch(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
     march, kept = segments.march, _nodes(cage, watched)
     shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)

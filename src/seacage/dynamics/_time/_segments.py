@@ -16,7 +16,7 @@ from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import MovingLaw
+from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._physics._wake import wake_in_sight
 from seacage.dynamics._time._forcing import morison_waves
 from seacage.dynamics._time._weather import AbstractWeather
@@ -51,6 +51,7 @@ class Build:
 
     cage: Cage
     law: MovingLaw
+    tuning: Tuning  # changes of a screen law
     stiffening: tuple[float, float]
     refined: int
 
@@ -142,6 +143,7 @@ class SegmentBatch:
             wake=self._wake,
             solidity=self._solidity,
             drag_factor=self._drag_factor,
+            tuning=self._build.tuning,
         )
 
     def _in_sight(self, net: StretchNode3, current: Stretch2) -> StretchPanel:

@@ -40,6 +40,9 @@ def virtual(
     events: _options.InFile = None,
     seed: _options.Seed = 0,
     hidden: _options.InFile = None,
+    truth: int | None = None,
+    water: Literal["tame", "coastal"] = "tame",
+    unseal: Annotated[bool, typer.Option("--unseal")] = False,
     cage: _options.CageName = "ace",
     workers: _options.Workers = None,
     share: Annotated[str | None, typer.Option(metavar="I/N")] = None,
@@ -53,6 +56,7 @@ def virtual(
     Example:
         seacage field virtual field --days 1.5 --seed 1
         seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
+        seacage field virtual field --method settle --truth 7 --water coastal
         seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
 
     Options:
@@ -69,17 +73,26 @@ def virtual(
         events: A TOML file of events.
         seed: Of weather, noise and outages.
         hidden: Hidden parameters; else those shipped.
+        truth: Number of a hidden cage of the family: 1 to 60; 101 to 110, sealed; 201 to 204,
+            outside it.
+        water: Of that truth: as on the shelf, or as two coastal ADCPs measured it.
+        unseal: Give a sealed truth, for a judgement that is the last.
         share: Only simulate the I-th of N shares of the hours, from 0; others do the rest.
     """
     from seacage.campaigns import Timetable, TruthParameters, virtual_field, virtual_field_share
 
-    truth = TruthParameters.read(hidden)
+    if truth is None:
+        parameters = TruthParameters.read(hidden)
+    elif hidden is not None:
+        raise refusal("--hidden and --truth are two hidden cages. Give one of them.")
+    else:
+        parameters = TruthParameters.of_family(truth, water=water, unseal=unseal)
     buoy = _buoy(record, days=days, start=start, seed=seed, calm=calm)
-    options: dict[str, Any] = {"hidden": truth, "seed": seed, "workers": workers}
+    options: dict[str, Any] = {"hidden": parameters, "seed": seed, "workers": workers}
     if method == "simulate":
         options |= {
             "kept": out / "stretches",
-            "waves": None if calm else _waves(waves, buoy, truth, seed=seed),
+            "waves": None if calm else _waves(waves, buoy, parameters, seed=seed),
             "timetable": Timetable.over(buoy, one_in=one_in),
         }
     else:
