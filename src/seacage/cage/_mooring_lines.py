@@ -11,6 +11,8 @@ from seacage.cage._cage import Cage
 from seacage.cage._parts import AnchorLines, Frame
 from seacage.cage._structure import Structure
 
+_NUMBERS = ("breaking_load", "capacity", "pretension", "tn_slope", "tn_load")  # of each line
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MooringLines:
@@ -83,11 +85,10 @@ class MooringLines:
         other = [name for name in names if name not in self.names]
         every = self.joined(MooringLines.alike(other, "line"))
         rows = [every.names.index(name) for name in names]
-        keys = ("breaking_load", "capacity", "pretension", "tn_slope", "tn_load")
         return MooringLines(
             names=tuple(names),
             kinds=tuple(every.kinds[row] for row in rows),
-            **{key: getattr(every, key)[rows] for key in keys},
+            **{key: getattr(every, key)[rows] for key in _NUMBERS},
         )
 
     def joined(self, *others: "MooringLines") -> "MooringLines":
@@ -96,11 +97,7 @@ class MooringLines:
         return MooringLines(
             names=sum((one.names for one in every), ()),
             kinds=sum((one.kinds for one in every), ()),
-            breaking_load=np.concatenate([one.breaking_load for one in every]),
-            capacity=np.concatenate([one.capacity for one in every]),
-            pretension=np.concatenate([one.pretension for one in every]),
-            tn_slope=np.concatenate([one.tn_slope for one in every]),
-            tn_load=np.concatenate([one.tn_load for one in every]),
+            **{key: np.concatenate([getattr(one, key) for one in every]) for key in _NUMBERS},
         )
 
 

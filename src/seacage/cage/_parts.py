@@ -85,6 +85,10 @@ class _Part:
 
     def __post_init__(self) -> None:
         check_bounds(self, f"Cage, {type(self).__name__}")
+        self._check()
+
+    def _check(self) -> None:
+        return  # most parts have bounds alone
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,8 +106,7 @@ class Mesh(_Part):
         default=None,
     )
 
-    def __post_init__(self) -> None:
-        super(Mesh, self).__post_init__()
+    def _check(self) -> None:
         if self.spoke_bearings is not None:
             self._check_spokes(self.spoke_bearings)
         depths = (*self.ring_depths, self.tip_depth)
@@ -154,8 +157,7 @@ class Collar(_Part):
         "", "that hold two pipes together, evenly spaced; 0 if these slide in them", default=None
     )
 
-    def __post_init__(self) -> None:
-        super(Collar, self).__post_init__()
+    def _check(self) -> None:
         if self.brackets and self.pipe_distance is None:
             raise InputError(
                 f"Cage, Collar: brackets = {self.brackets} need the distance between the pipes. "
@@ -189,8 +191,7 @@ class Netting(_Part):
     fouling_deep: float = quantity("", "solidity added by growth below the boundary depth")
     fouling_boundary_depth: float = quantity("m", "depth where shallow growth ends")
 
-    def __post_init__(self) -> None:
-        super(Netting, self).__post_init__()
+    def _check(self) -> None:
         for added in (self.fouling_shallow, self.fouling_deep):
             if not 0.0 < self.solidity + added < 0.9:
                 raise InputError(
@@ -242,8 +243,7 @@ class SinkerTube(_Part):
     )
     lost_to: float | None = quantity("deg", "up to which it is, clockwise", default=None)
 
-    def __post_init__(self) -> None:
-        super(SinkerTube, self).__post_init__()
+    def _check(self) -> None:
         if (self.lost_from is None) != (self.lost_to is None):
             raise InputError(
                 "Cage, SinkerTube: of lost_from_deg and lost_to_deg one is missing. Give both, or "
@@ -304,8 +304,7 @@ class Frame(_Part):
         "", "of the corner on its springs, over critical", default=0.2
     )
 
-    def __post_init__(self) -> None:
-        super(Frame, self).__post_init__()
+    def _check(self) -> None:
         _check_curve("Frame", self, "rope_")
         east, north = self.corners_east, self.corners_north
         if (self.side is None) == (east is None) or (east is None) != (north is None):
@@ -366,8 +365,7 @@ class AnchorLines(_Part):
     rope_breaking_load: float | None = _rope_breaking_load()
     rope_material_factor: float | None = _rope_factor()
 
-    def __post_init__(self) -> None:
-        super(AnchorLines, self).__post_init__()
+    def _check(self) -> None:
         _check_curve("AnchorLines", self, "rope_")
 
 
@@ -400,8 +398,7 @@ class Bridles(_Part):
     )
     tn_intercept: float | None = _intercept()
 
-    def __post_init__(self) -> None:
-        super(Bridles, self).__post_init__()
+    def _check(self) -> None:
         _check_curve("Bridles", self, "")
         if not self.bearings:
             raise InputError("Cage, Bridles: bearings_deg is empty. Give at least one bridle.")
@@ -425,8 +422,7 @@ class Site(_Part):
         "deg", "of the cage's centre, east positive, WGS84", low=-180.0, default=None
     )
 
-    def __post_init__(self) -> None:
-        super(Site, self).__post_init__()
+    def _check(self) -> None:
         if (self.latitude is None) != (self.longitude is None):
             raise InputError(
                 "Cage, Site: latitude_deg and longitude_deg belong together. Give both or none."

@@ -32,6 +32,10 @@ class Named:
         where = f"Structure, {type(self).__name__} {self.name!r}"
         check_bounds(self, where)
         _check_choices(self, where)
+        self._check()
+
+    def _check(self) -> None:
+        return  # most parts have bounds and choices alone
 
 
 def _check_choices(part: Any, where: str) -> None:
@@ -94,8 +98,7 @@ class Twine(Named):
         "", "structural damping over pair-critical damping", default=0.1
     )
 
-    def __post_init__(self) -> None:
-        super(Twine, self).__post_init__()
+    def _check(self) -> None:
         if self.diameter >= self.half_mesh:
             raise InputError(
                 f"Structure, Twine {self.name!r}: diameter_m = {self.diameter:g} leaves no hole "
@@ -137,8 +140,7 @@ class Net(Named):
     lower_width: float = quantity("m", "knitted, round the lower edge; 0: as built", default=0.0)
     twines: str = _choice("run 'along' the panels' edges, or 'diagonal' to them", ALONG, DIAGONAL)
 
-    def __post_init__(self) -> None:
-        super(Net, self).__post_init__()
+    def _check(self) -> None:
         if self.upper == self.lower:
             raise InputError(
                 f"Structure, Net {self.name!r}: upper and lower are both {self.upper!r}. Name two "
@@ -161,8 +163,7 @@ class Tie(Named):
     length: float = quantity("m", "unstretched; 0: as built", default=0.0)
     segments: int = quantity("", "pieces that each is cut into", low=1, default=1)
 
-    def __post_init__(self) -> None:
-        super(Tie, self).__post_init__()
+    def _check(self) -> None:
         if self.kind != ROPES and self.segments != 1:
             raise InputError(
                 f"Structure, Tie {self.name!r}: segments = {self.segments}, but {self.kind} are "
@@ -181,8 +182,7 @@ class Point(Named):
     height: float = quantity("m", "of a box of this volume, centred on the node", default=1.0)
     added_mass_coefficient: float = quantity("", "added mass over displaced mass", default=0.5)
 
-    def __post_init__(self) -> None:
-        super(Point, self).__post_init__()
+    def _check(self) -> None:
         _check_position(self.name, self.position)
         if self.displaced > 0.0 and self.height == 0.0:
             raise InputError(
@@ -198,8 +198,7 @@ class Anchor(Named):
     name: str = _name("what lines call it")
     position: tuple[float, ...] = quantity("m", "x east, y north, z up", low=-math.inf)
 
-    def __post_init__(self) -> None:
-        super(Anchor, self).__post_init__()
+    def _check(self) -> None:
         _check_position(self.name, self.position)
 
 

@@ -10,7 +10,7 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, towards
 from seacage.figures._gif import Gif
-from seacage.figures._style import FAINT, INK, MULTI, MUTED, style
+from seacage.figures._style import FAINT, INK, MULTI, MUTED, caption, style
 from seacage.ocean import SeaState, Waves, surface_elevation
 
 if TYPE_CHECKING:
@@ -288,16 +288,9 @@ def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
 def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
     sea = motion.sea
     waves = f"waves Hs {sea.hs:.3g} m, Tp {sea.peak_period:.3g} s" if sea.hs else "no waves"
-    axes.text(0.012, 0.985, f"Cage {cage.name}", transform=axes.transAxes, va="top", weight="bold")
-    axes.text(
-        0.988,
-        0.985,
-        f"current {sea.current_speed:.3g} m/s to the right, {waves}, {motion.origin}",
-        transform=axes.transAxes,
-        va="top",
-        ha="right",
-        color=MUTED,
-    )
+    about = f"current {sea.current_speed:.3g} m/s to the right, {waves}, {motion.origin}"
+    caption(axes, f"Cage {cage.name}", (0.012, 0.985), va="top", weight="bold")
+    caption(axes, about, (0.988, 0.985), va="top", ha="right", color=MUTED)
 
 
 def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
@@ -311,10 +304,9 @@ def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
         bar.imshow(np.arange(levels)[None], cmap=artist.get_cmap(), aspect="auto")
         bar.set_axis_off()
         most = scale * artist.get_clim()[1]
-        below = {"transform": bar.transAxes, "va": "top", "fontsize": 7.5}
-        bar.text(0.0, 1.5, label, transform=bar.transAxes, va="bottom", fontsize=8.0)
-        bar.text(0.0, -0.5, "0", **below)
-        bar.text(1.0, -0.5, f"{most:.0f} {unit}", ha="right", **below)
+        caption(bar, label, (0.0, 1.5), va="bottom", fontsize=8.0)
+        caption(bar, "0", (0.0, -0.5), va="top", fontsize=7.5)
+        caption(bar, f"{most:.0f} {unit}", (1.0, -0.5), ha="right", va="top", fontsize=7.5)
 
 
 def _trace(figure: "Figure", cage: Cage, motion: Motion, bridle: int) -> "tuple[Line2D, Line2D]":

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, blank_figure, style
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, blank_figure, caption, style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -114,19 +114,10 @@ def _finish(
 
 
 def _explain(axes: "PolarAxes", cage: Cage, *, ranges: bool) -> None:
-    caption = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
+    text = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
     if ranges:
-        caption += "\nbars: mean; lines: least to most"
-    axes.text(
-        0.5,
-        -0.07,
-        caption,
-        transform=axes.transAxes,
-        ha="center",
-        va="top",
-        color=MUTED,
-        fontsize=8.0,
-    )
+        text += "\nbars: mean; lines: least to most"
+    caption(axes, text, (0.5, -0.07), ha="center", va="top", color=MUTED, fontsize=8.0)
 
 
 def _arrow(axes: "PolarAxes", current_to: float) -> None:

@@ -63,6 +63,11 @@ def note(
     axes.annotate(text, at, xytext=away, textcoords="offset points", **look)
 
 
+def caption(axes: "Axes", text: str, at: tuple[float, float], **look: Any) -> None:
+    """Text at a share of the axes' width and height."""
+    axes.text(*at, text, transform=axes.transAxes, **look)
+
+
 def panel_grid(
     count: int, height: float, *, room: float = 0.0, sharex: bool = False, sharey: bool = False
 ) -> "tuple[Figure, list[Axes]]":

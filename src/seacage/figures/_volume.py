@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, caption, head, style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -80,9 +80,7 @@ def volume_figure(
         if measured:
             sources = "; ".join(dict.fromkeys(mark.source for mark in measured))
             note = f"◆ measured on other cages with other gear:\n{sources}"
-            axes.text(
-                0.02, 0.03, note, transform=axes.transAxes, va="bottom", color=MUTED, fontsize=7.5
-            )
+            caption(axes, note, (0.02, 0.03), va="bottom", color=MUTED, fontsize=7.5)
         head(axes, "Volume of the net", origin=origin, legend=len(fraction))
     return figure
 
