@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage._cage import Cage
-from seacage.cage._parts import AnchorLines, Frame
+from seacage.cage._parts import AnchorLines, Bridles, Frame
 from seacage.cage._structure import Structure
 
 _NUMBERS = ("breaking_load", "capacity", "pretension", "tn_slope", "tn_load")  # of each line
@@ -110,15 +110,8 @@ def mooring_lines(cage: Cage | Structure, *, anchored: bool) -> MooringLines:
         ropes = MooringLines.alike(cage.rope_names, "tie")
         return MooringLines.alike(cage.bridle_names, "line").joined(ropes)
     parts, anchors = cage.bridles, cage.anchor_lines
-    bridles = MooringLines.alike(
-        cage.bridle_names,
-        "bridle",
-        breaking_load=parts.breaking_load,
-        material_factor=parts.material_factor,
-        pretension=parts.pretension,
-        tn_slope=parts.tn_slope,
-        tn_intercept=parts.tn_intercept,
-    )
+    known = {"pretension": parts.pretension, **_rope(parts, prefix="")}
+    bridles = MooringLines.alike(cage.bridle_names, "bridle", **known)
     if not anchored:
         return bridles
     sides = range(1, len(cage.corner_position) + 1)
@@ -131,6 +124,6 @@ def mooring_lines(cage: Cage | Structure, *, anchored: bool) -> MooringLines:
     )
 
 
-def _rope(part: Frame | AnchorLines) -> dict[str, Any]:
+def _rope(part: Frame | AnchorLines | Bridles, prefix: str = "rope_") -> dict[str, Any]:
     keys = ("breaking_load", "material_factor", "tn_slope", "tn_intercept")
-    return {key: getattr(part, f"rope_{key}") for key in keys}
+    return {key: getattr(part, prefix + key) for key in keys}

@@ -56,7 +56,7 @@ def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> floa
 
     error = _error(truth, mean)
     _check_std(error, std, smallest=0.0)
-    _check_level(level)
+    check_level(level)
     return float(np.mean(np.abs(error) <= ndtri(0.5 + 0.5 * level) * std))
 
 
@@ -142,7 +142,7 @@ def block_bootstrap(
     Source: Politis & Romano (1992), circular block resampling.
     """
     _error(difference, np.zeros_like(difference))
-    _check_level(level)
+    check_level(level)
     ticks = len(difference)
     if not 1 <= block <= ticks:
         raise InputError(
@@ -187,6 +187,7 @@ def _check_std(error: PerN, std: PerN, *, smallest: float) -> None:
         )
 
 
-def _check_level(level: float) -> None:
+def check_level(level: float) -> None:
+    """Refuse a level of intervals that is no share."""
     if not 0.0 < level < 1.0:
         raise InputError(f"level = {level:g} is not between 0 and 1. Give 0.95 for 95 %.")

@@ -16,6 +16,7 @@ from seacage.studies._benchmarks._problems import Problem, Sample
 
 # So that the processor's time is what a single core would take
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+TIMES = ("fit_s", "predict_s", "tick_s")  # as named in answers and scores
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -145,14 +146,7 @@ def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> 
         mean, std = answer["mean"], answer["std"]
     if mean.shape != (problem.tests,) or not (np.isfinite(mean) & np.isfinite(std)).all():
         return replace(run, error="the answer is not a finite number for each test point")
-    return replace(
-        run,
-        mean=mean,
-        std=std,
-        fit_s=float(result["fit_s"]),
-        predict_s=float(result["predict_s"]),
-        tick_s=float(result["tick_s"]),
-    )
+    return replace(run, mean=mean, std=std, **{name: float(result[name]) for name in TIMES})
 
 
 def _sign(out: Path, job: Path) -> Path:

@@ -1,12 +1,12 @@
 """How good the answers to benchmark problems are, by seed and over seeds."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.studies._benchmarks._runs import Run
+from seacage.studies._benchmarks._runs import TIMES, Run
 from seacage.surrogates import coverage, crps, mnll, rmse
 
 # Share of the truth's standard deviation that a predicted one counts as at least. A likelihood does
@@ -68,9 +68,7 @@ def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
         mnll=mnll(truth, run.mean, std),
         crps=crps(truth, run.mean, std),
         coverage=coverage(truth, run.mean, std),
-        fit_s=run.fit_s,
-        predict_s=run.predict_s,
-        tick_s=run.tick_s,
+        **{name: getattr(run, name) for name in TIMES},
     )
 
 
@@ -78,26 +76,18 @@ def summary(scores: Sequence[RunScore]) -> Summary:
     """One method's scores on one problem as one; a method that failed on a seed has no mean."""
     failures = [one.error for one in scores if one.error is not None]
 
-    def mean(name: str) -> float:
-        return float(np.mean([getattr(one, name) for one in scores]))
+    def over_seeds(statistic: Callable[..., np.floating], *names: str) -> dict[str, float]:
+        return {name: float(statistic([getattr(one, name) for one in scores])) for name in names}
 
-    def median(name: str) -> float:
-        return float(np.median([getattr(one, name) for one in scores]))
-
+    medians = over_seeds(np.median, "rmse", "mnll")
     return Summary(
         problem=scores[0].problem,
         method=scores[0].method,
         seeds=len(scores) - len(failures),
         failures=len(failures),
-        rmse=mean("rmse"),
-        rmse_median=median("rmse"),
-        mnll=mean("mnll"),
-        mnll_median=median("mnll"),
-        crps=mean("crps"),
-        coverage=mean("coverage"),
-        fit_s=median("fit_s"),
-        predict_s=median("predict_s"),
-        tick_s=median("tick_s"),
+        **over_seeds(np.mean, "rmse", "mnll", "crps", "coverage"),
+        **{f"{name}_median": median for name, median in medians.items()},
+        **over_seeds(np.median, *TIMES),
         rmses=tuple(one.rmse for one in scores),
         error=failures[0] if failures else None,
     )

@@ -7,6 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
+from seacage.surrogates._scores import check_level
 
 Series = Float[np.ndarray, " n"]
 FAR = 16.0  # a squared error counts as at most so many variances, lest one reading rule the search
@@ -37,7 +38,7 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     """
     from scipy.special import ndtri, stdtrit
 
-    _check_level(level)
+    check_level(level)
     scores = np.asarray(score, dtype=np.float64)
     if len(scores) == 0 or not np.isfinite(scores).all() or np.any(scores < 0.0):
         raise InputError(
@@ -102,7 +103,7 @@ class AdaptiveConformal:
     cap: float = 4.0
 
     def __post_init__(self) -> None:
-        _check_level(self.level)
+        check_level(self.level)
         if not (0.0 < self.rate < 1.0 and 0.0 < self.floor <= 1.0 <= self.cap < math.inf):
             raise InputError(
                 f"AdaptiveConformal: rate = {self.rate:g} must lie between 0 and 1, and 1 between "
@@ -133,8 +134,3 @@ class AdaptiveConformal:
             if counted:
                 factor = self.stepped(factor, held=one <= edge * factor)
         return given
-
-
-def _check_level(level: float) -> None:
-    if not 0.0 < level < 1.0:
-        raise InputError(f"level = {level:g} is not between 0 and 1. Give 0.95 for 95 %.")

@@ -21,6 +21,7 @@ PROBES = 250  # random inputs on the grid's lines along one axis, to see which a
 GROWTH = (1.25, 3.0)  # least and most that an axis grows from one round to the next
 # Share of the answers' size that a standard deviation has to reach to be worth following
 ROUNDING = 1e-9
+_PRECISION = ("tolerance", "std_tolerance", "mean_error", "std_error")  # as saved
 
 
 # Answers of a model without and with noise; twice the same one where noise is not asked for
@@ -186,10 +187,7 @@ class Table:
             "nodes": list(self.nodes),
             "output_shape": list(self.output_shape),
             "noise": self.has_noise,
-            "tolerance": self.tolerance,
-            "std_tolerance": self.std_tolerance,
-            "mean_error": self.mean_error,
-            "std_error": self.std_error,
+            **{name: getattr(self, name) for name in _PRECISION},
         }
         return settings, {"coefficients": self.spline.coefficients, "least_std": self.least_std}
 
@@ -212,10 +210,7 @@ class Table:
             region=region,
             spline=Spline(shape=shape, periodic=region.periodic, coefficients=coefficients),
             output_shape=output_shape,
-            tolerance=setting(settings, "tolerance", float),
-            std_tolerance=setting(settings, "std_tolerance", float),
-            mean_error=setting(settings, "mean_error", float),
-            std_error=setting(settings, "std_error", float),
+            **{name: setting(settings, name, float) for name in _PRECISION},
             least_std=array(arrays, "least_std", outputs),
         )
 
