@@ -391,10 +391,7 @@ class Bridles(_Part):
     breaking_load: float = quantity("n", "least of rope and chain", above=True)
     material_factor: float = quantity("", "divides the breaking load", low=1.0)
     tn_slope: float | None = quantity(
-        "",
-        "m of the T–N curve of the rope or chain, whichever wears faster",
-        low=1.0,
-        default=None,
+        "", "m of the T–N curve of the rope or chain, whichever wears faster", low=1.0, default=None
     )
     tn_intercept: float | None = _intercept()
 

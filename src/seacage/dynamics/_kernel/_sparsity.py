@@ -81,10 +81,7 @@ def _elimination(
     # heavy on the diagonal, so that no pivot is chosen and nothing cancels
     matrix = csc_array(joined + joined.T + (1.0 + 4.0 * len(one)) * eye_array(nodes))
     factors = splu(
-        matrix,
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
+        matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
     both = coo_array(factors.L + factors.U)
     filled = np.array([both.row, both.col], dtype=np.int64)

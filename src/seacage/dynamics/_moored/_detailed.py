@@ -129,9 +129,7 @@ def _stiffening(
     )
     beside = len(bars.length) + np.arange(len(assembly.bridles))
     return replace(
-        assembly,
-        bars=Bars.joined(bars, second),
-        bridles=np.concatenate([assembly.bridles, beside]),
+        assembly, bars=Bars.joined(bars, second), bridles=np.concatenate([assembly.bridles, beside])
     )
 
 

@@ -385,9 +385,7 @@ def _ground(structure: Structure, mass: Float[np.ndarray, " node"]) -> Ground:
     inner = [structure.line_nodes(index)[1:-1] for index in range(len(structure.line))]
     nodes = np.concatenate([structure.point_nodes, *inner])
     return Ground(
-        nodes=nodes,
-        stiffness=mass[nodes] * GRAVITY / SINKING,
-        level=-structure.site.water_depth,
+        nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-structure.site.water_depth
     )
 
 

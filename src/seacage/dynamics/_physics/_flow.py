@@ -64,10 +64,7 @@ def steady_flow(
     """
     panels = assembly.panels
     screen = Screen(
-        law=law,
-        solidity=panels.solidity,
-        twine_diameter=panels.twine_diameter,
-        tuning=tuning,
+        law=law, solidity=panels.solidity, twine_diameter=panels.twine_diameter, tuning=tuning
     )
     speed = np.linalg.norm(current_velocity, axis=1)
     unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]

@@ -32,13 +32,7 @@ from seacage.dynamics._physics._loads import (
     spring_force,
     wet_share,
 )
-from seacage.dynamics._physics._screens import (
-    AS_PUBLISHED,
-    MOVING_LAWS,
-    MovingLaw,
-    Screen,
-    Tuning,
-)
+from seacage.dynamics._physics._screens import AS_PUBLISHED, MOVING_LAWS, MovingLaw, Screen, Tuning
 
 CasePanel = Float[np.ndarray, "*case panel"]
 CasePanel3 = Float[np.ndarray, "case panel 3"]

@@ -37,8 +37,7 @@ Id = Annotated[
 
 
 Line = Annotated[
-    str,
-    Path(max_length=64, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\\-]*$", examples=["anchor-3"]),
+    str, Path(max_length=64, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\\-]*$", examples=["anchor-3"])
 ]
 
 

@@ -5,10 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from seacage.service._schemas._base import (
-    AbstractAnswer,
-    AbstractRequest,
-)
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 from seacage.service._schemas._state import Concern
 
 

@@ -10,12 +10,7 @@ from pydantic.config import JsonDict
 
 from seacage.conventions import InputError
 from seacage.records import NO_MEAN_PERIOD, Sample, is_mean_period
-from seacage.service._schemas._base import (
-    AbstractAnswer,
-    AbstractRequest,
-    Name,
-    Time,
-)
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest, Name, Time
 
 _LARGEST = 1.7e308
 _EARLIEST = datetime(1970, 1, 1, tzinfo=UTC)

@@ -22,13 +22,7 @@ from seacage.service._store._alarms import alarm_book, journal_between, keep_ala
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
-from seacage.service._store._damage import (
-    Stretch,
-    begin_damage,
-    cut_begins,
-    damage_of,
-    keep_damage,
-)
+from seacage.service._store._damage import Stretch, begin_damage, cut_begins, damage_of, keep_damage
 from seacage.service._store._database._checksum import CHECKED, Damage
 from seacage.service._store._database._open import database_at, look_into
 from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, microseconds

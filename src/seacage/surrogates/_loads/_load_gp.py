@@ -17,12 +17,7 @@ from seacage.surrogates._gp import (
     processes_to_arrays,
     select_likelihood_outputs,
 )
-from seacage.surrogates._loads._case_kernel import (
-    MEAN,
-    WAVE_EFFECT,
-    case_inputs,
-    case_variance,
-)
+from seacage.surrogates._loads._case_kernel import MEAN, WAVE_EFFECT, case_inputs, case_variance
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._shape._symmetry import Symmetry
@@ -62,12 +57,7 @@ class LoadGP:
         check_options(restarts=self.restarts)
 
     def fit(
-        self,
-        x: Float[np.ndarray, "n feature"],
-        loads: LoadCases,
-        *,
-        duration: float,
-        seed: int = 0,
+        self, x: Float[np.ndarray, "n feature"], loads: LoadCases, *, duration: float, seed: int = 0
     ) -> "FittedLoadGP":
         """Learn from features and loads.
 

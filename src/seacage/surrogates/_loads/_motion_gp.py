@@ -8,11 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.surrogates._arrays import Arrays, Settings, array
-from seacage.surrogates._gp import (
-    FittedGaussianProcess,
-    processes_from_arrays,
-    processes_to_arrays,
-)
+from seacage.surrogates._gp import FittedGaussianProcess, processes_from_arrays, processes_to_arrays
 from seacage.surrogates._loads._case_kernel import case_inputs
 from seacage.surrogates._loads._load_gp import HEIGHT, OFFSET, draw_images, fit_tables
 from seacage.surrogates._shape._symmetry import Symmetry
@@ -84,10 +80,7 @@ class FittedMotionGP:
         return cls(process=fitted["motion"], centre=centre, mode=mode, offset=offset)
 
     def mean(
-        self,
-        x: Float[np.ndarray, "row feature"],
-        *,
-        hs: Float[np.ndarray, " row"],
+        self, x: Float[np.ndarray, "row feature"], *, hs: Float[np.ndarray, " row"]
     ) -> Float[np.ndarray, "row node 2"]:
         """Standard deviations of each node's place, horizontally and upwards [m].
 

@@ -116,11 +116,7 @@ def _spread(error: Series, block: Blocks) -> float | None:
 
 
 def _maximum_spread(
-    windows: Windows,
-    largest: LoadPrediction,
-    mean: Series,
-    scale: Series,
-    error: Series,
+    windows: Windows, largest: LoadPrediction, mean: Series, scale: Series, error: Series
 ) -> float | None:
     """Standard deviation of the largest load's logarithm by held-out blocks of two hours.
 
