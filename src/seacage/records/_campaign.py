@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
@@ -76,15 +76,11 @@ class CampaignRecord:
     )
     parted: tuple[str, ...] = ()  # those that bore nothing, as they had parted
 
+    origin: ClassVar[Origin] = Origin.COMPUTED  # a campaign is always computed
     __repr__ = brief
 
     def __len__(self) -> int:
         return len(self.seas)
-
-    @property
-    def origin(self) -> Origin:
-        """A campaign is always computed."""
-        return Origin.COMPUTED
 
     @property
     def converged(self) -> Bool[np.ndarray, " case"]:

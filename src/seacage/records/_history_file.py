@@ -7,7 +7,7 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -112,6 +112,7 @@ class HistoryRecord:
     settings: Mapping[str, str | int | float]
     version: str  # of the seacage that computed it
 
+    origin: ClassVar[Origin] = Origin.COMPUTED  # a simulation is always computed
     __repr__ = brief
 
     def __post_init__(self) -> None:
@@ -127,11 +128,6 @@ class HistoryRecord:
                 f"HistoryRecord: lines has {', '.join(sorted(self.lines)) or 'nothing'}. Give "
                 f"{', '.join(LINES)} with line_names, or neither."
             )
-
-    @property
-    def origin(self) -> Origin:
-        """A simulation is always computed."""
-        return Origin.COMPUTED
 
 
 def write_history(record: HistoryRecord, path: Path | str) -> None:

@@ -21,12 +21,6 @@ _CONSTANT = 12  # equal values that make a column one that never changes
 _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 
-def read_csv(path: Path, columns: ColumnMap | None, *, stream: str) -> Record:
-    """Read a table, unchecked but for what only its file shows; see ``read_record``."""
-    table, columns = split_table(path, columns)
-    return record_in(table, columns, stream=stream)
-
-
 def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     """Read a table by its map, unchecked but for what only its file shows."""
     values: dict[str, np.ndarray] = {}

@@ -11,7 +11,7 @@ from seacage.records._quality._check import check_record
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._readers._column_map import ColumnMap
-from seacage.records._readers._csv import read_csv, split_table
+from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._readers._shipped import shipped_maps
 from seacage.records._record import Record
@@ -79,7 +79,7 @@ def read_record(
         return check_record(read_cf(path, columns, stream=stream), limits)
     if isinstance(columns, NetcdfMap):
         raise RecordError(f"{path}: a NetCDF file's map is no table's. Give a ColumnMap.")
-    return _check(read_csv(path, columns, stream=stream), limits)
+    return _check(record_in(*split_table(path, columns), stream=stream), limits)
 
 
 def known_map(path: Path | str) -> ColumnMap | None:

@@ -6,17 +6,12 @@ from concurrent.futures import Future
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import TypeVar
+from typing import Concatenate, ParamSpec, TypeVar
 
 from seacage.records import Amendment, Limits, Sample
 from seacage.service._schemas._samples import AggregateOut
-from seacage.service._store._adaptations import (
-    Adaptation,
-    Refold,
-    adaptation_at,
-    keep_adaptations,
-    refold_of,
-)
+from seacage.service._store import _adaptations, _samples
+from seacage.service._store._adaptations import Adaptation, Refold, keep_adaptations
 from seacage.service._store._aggregates import aggregates_between, check_aggregate
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
@@ -29,20 +24,12 @@ from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, mi
 from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._days import retire_days
 from seacage.service._store._quality import newest_keys
-from seacage.service._store._samples import (
-    Append,
-    Stored,
-    amendments_since,
-    latest_samples,
-    reinstate_samples,
-    samples_at,
-    samples_between,
-    withdraw_samples,
-)
+from seacage.service._store._samples import Append, Stored, reinstate_samples, withdraw_samples
 from seacage.service._store._write_queue import Writer
 from seacage.twin import AlarmEvent
 
 __all__ = ["Store", "StoreError", "look_into", "open_store"]
+P = ParamSpec("P")
 T = TypeVar("T")
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
@@ -186,9 +173,12 @@ class Store:
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         found = self._read(
             "samples",
-            lambda session: samples_between(
-                session, cage, bounds, stream=stream, withdrawn=withdrawn, known_at=known_at
-            ),
+            _samples.samples_between,
+            cage,
+            bounds,
+            stream=stream,
+            withdrawn=withdrawn,
+            known_at=known_at,
         )
         if self._archive is None:
             return found
@@ -199,7 +189,7 @@ class Store:
 
         What was withdrawn is left out.
         """
-        latest = self._read("latest", lambda session: latest_samples(session, cage, at=at))
+        latest = self._read("latest", _samples.latest_samples, cage, at=at)
         if self._archive is None:
             return latest
         return latest_of(latest, self._archive, cage, at=at)
@@ -229,10 +219,7 @@ class Store:
         """
         check_aggregate(key, width_s)
         bounds = Bounds(start=start, end=end, limit=limit)
-        return self._read(
-            "aggregates",
-            lambda session: aggregates_between(session, (cage, stream), key, width_s, bounds),
-        )
+        return self._read("aggregates", aggregates_between, (cage, stream), key, width_s, bounds)
 
     def keep_alarms(self, cage: str, *, book: str, journal: Sequence[AlarmEvent]) -> "Future[None]":
         """Keep the book of alarms and what happened to them, both or neither.
@@ -246,14 +233,14 @@ class Store:
 
     def alarm_book(self, cage: str) -> str | None:
         """Read the book that was kept last; None where there was none."""
-        return self._read("alarm_book", lambda session: alarm_book(session, cage))
+        return self._read("alarm_book", alarm_book, cage)
 
     def newest_of_each(self, cage: str, stream: str, *, at: datetime) -> list[Sample]:
         """Read the last samples of a stream until a time that carried each of its quantities."""
 
         def newest(session: AbstractSession) -> list[Sample]:
             keys = newest_keys(session, (cage, stream), microseconds(at))
-            return samples_at(session, cage, stream, keys, known_at=at)
+            return _samples.samples_at(session, cage, stream, keys, known_at=at)
 
         return self._read("newest", newest)
 
@@ -261,10 +248,8 @@ class Store:
         self, cage: str, stream: str, *, start: datetime, known_at: datetime
     ) -> tuple[Amendment, ...]:
         """Read which flags of samples since a time later ones have made worse, until a time."""
-        return self._read(
-            "amendments",
-            lambda session: amendments_since(session, (cage, stream), start, known_at=known_at),
-        )
+        since = _samples.amendments_since
+        return self._read("amendments", since, (cage, stream), start, known_at=known_at)
 
     def keep_adaptations(
         self,
@@ -280,15 +265,15 @@ class Store:
 
     def adaptation(self, cage: str, *, at: datetime) -> Adaptation | None:
         """Read the factors in force at a time; None where none were kept until then."""
-        return self._read("adaptation", lambda session: adaptation_at(session, cage, at))
+        return self._read("adaptation", _adaptations.adaptation_at, cage, at)
 
     def refold(self, cage: str) -> Refold | None:
         """Read what has to be adapted anew as samples came late; None where nothing has."""
-        return self._read("refold", lambda session: refold_of(session, cage))
+        return self._read("refold", _adaptations.refold_of, cage)
 
     def line_damage(self, cage: str) -> tuple[list[Stretch], list[tuple[str, datetime]]]:
         """Read what stretches of time did to lines, and from when on each line is counted."""
-        return self._read("damage", lambda session: damage_of(session, cage))
+        return self._read("damage", damage_of, cage)
 
     def keep_damage(
         self, cage: str, span: tuple[datetime, datetime], rows: Sequence[Stretch]
@@ -335,7 +320,7 @@ class Store:
     ) -> list[AlarmEvent]:
         """Read what happened to alarms, in time order, start <= t < end."""
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
-        return self._read("journal", lambda session: journal_between(session, cage, bounds))
+        return self._read("journal", journal_between, cage, bounds)
 
     def retire(
         self,
@@ -370,15 +355,21 @@ class Store:
         self._writer.close()
         self._database.close()
 
-    def _read(self, what: str, ask: Callable[[AbstractSession], T]) -> T:
+    def _read(
+        self,
+        what: str,
+        ask: Callable[Concatenate[AbstractSession, P], T],
+        *args: P.args,
+        **more: P.kwargs,
+    ) -> T:
         """Read; of a damaged file that can be begun anew, from the new one."""
         try:
             begun = self._database.round
             try:
-                answer = self._read_once(ask)
+                answer = self._read_once(lambda session: ask(session, *args, **more))
             except DamageError as error:
                 self._renew(begun, error)
-                answer = self._read_once(ask)
+                answer = self._read_once(lambda session: ask(session, *args, **more))
         except StoreError as error:
             self._unread = {**self._unread, what: error}
             self._care.begin()  # which looks until the way is open again

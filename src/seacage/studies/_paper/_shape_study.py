@@ -64,14 +64,6 @@ class ShapeTrial:
         every = np.concatenate([training, self.computed])
         return OverTime.of_moment(every, moment, rest_position=self.cage.design_position)
 
-    def training_features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
-        """Features of the training cases."""
-        return _features(_seas_of(self.campaign), inputs)
-
-    def test_features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
-        """Features of the test cases."""
-        return _features(self.seas, inputs)
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ShapeCase:
@@ -165,7 +157,9 @@ def _settings(model: ShapeModel, trial: ShapeTrial) -> dict[str, object]:
 
 def _make(begun: Path, model: ShapeModel, trial: ShapeTrial, progress: Progress) -> None:
     """Train a model, ask it, and keep its shapes and what they took."""
-    x, test_features = trial.training_features(model.inputs), trial.test_features(model.inputs)
+    x, test_features = (
+        _features(_seas_of(one), model.inputs) for one in (trial.campaign, trial.held_out)
+    )
     shape = trial.campaign.node_position[trial.campaign.converged]
     known = {
         "over_time": trial.over_time,
