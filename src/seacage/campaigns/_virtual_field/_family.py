@@ -1,28 +1,25 @@
 """A family of hidden cages and waters: one drawn for each number."""
 
 import hashlib
-from importlib import resources
+import json
 from typing import Any, Literal, get_args
 
 import numpy as np
 
-from seacage.conventions import InputError, parse_toml
+from seacage.conventions import InputError, read_packaged_table
 
 Water = Literal["tame", "coastal"]
 WATERS: tuple[Water, ...] = get_args(Water)
-
-_FILE = resources.files("seacage.campaigns._virtual_field") / "family.toml"
 
 
 def draw_truth(
     table: dict[str, Any], number: int, water: str, *, unseal: bool
 ) -> tuple[dict[str, Any], str]:
-    """The table of hidden parameters with what is drawn by a number, and the file's SHA-256.
+    """The table of hidden parameters with what is drawn by a number, and the family's SHA-256.
 
     Raises InputError: a number or a water that is none, or a sealed number without ``unseal``.
     """
-    text = _FILE.read_text("utf-8")
-    family = parse_toml(text, f"{_FILE}")
+    family = read_packaged_table("seacage.campaigns._virtual_field", "family.toml")
     _check_number(number, family["numbers"], unseal=unseal)
     if water not in WATERS:
         raise InputError(f"Truth {number}: water {water!r} is none of {', '.join(WATERS)}.")
@@ -30,7 +27,7 @@ def draw_truth(
     drawn = {**table, "seed": number}
     for part in (family["cage"], family["water"][water], outside):
         drawn = _over(drawn, part, number, "")
-    return drawn, hashlib.sha256(text.encode()).hexdigest()
+    return drawn, hashlib.sha256(json.dumps(family, sort_keys=True).encode()).hexdigest()
 
 
 def _check_number(number: int, numbers: dict[str, list[int]], *, unseal: bool) -> None:
