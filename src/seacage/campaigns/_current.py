@@ -12,11 +12,7 @@ from seacage.records import Record, check_record, instant
 _HOUR = 3600.0
 
 # Period [h], and half-axes of the current's ellipse along and across the stream [m/s]
-_TIDES = {
-    "M2": (12.4206012, 0.62, 0.08),
-    "S2": (12.0, 0.20, 0.03),
-    "K1": (23.9344696, 0.14, 0.03),
-}
+_TIDES = {"M2": (12.4206012, 0.62, 0.08), "S2": (12.0, 0.20, 0.03), "K1": (23.9344696, 0.14, 0.03)}
 
 # Where the flood goes, clockwise from north: along the long axis of the ellipses [deg]
 _STREAM_TO = 20.0

@@ -110,30 +110,22 @@ def settle(
     ----------
     cage
         Of a ``Structure`` the "bridles" are its lines, and displacements are from the design.
-    sea
-        One sea state, or several: a leading case axis.
     law
         "aarsnes", "loland" or "kristiansen-faltinsen": one for all cases or one for each.
-    skin_friction, lift_factor
-        Changes to the law, as in ``simulate``.
+    sea, skin_friction, lift_factor, wake, hold_collar, workers
+        As in ``simulate``.
     mooring
         "catenary": frame ropes, buoys, and anchor lines that lift off the sea bed and come to
         lie on it; or "springs" under the frame corners, for old campaigns (``SPRINGS``).
     mean_waves
         Take waves' mean effect on the net's drag; without it a sea with waves is refused,
         as an equilibrium has none.
-    wake
-        Whether the down-stream half of the net meets slower water.
-    hold_collar
-        Keep the collar in its place, as in a tank.
     collar_drag
         Whether the current drags on collar and sinker tube.
     parted
         Names of lines that bear nothing; displacements are from the whole cage at rest.
     starts
         First shapes to seek equilibria from; 1 takes half the time of 2.
-    workers
-        Threads to share the cases among.
 
     Raises InputError: waves without ``mean_waves``, no sea at all, no start, a line that the
     mooring has not, or a cage that cannot float or has not what the mooring needs.

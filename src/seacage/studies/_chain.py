@@ -9,15 +9,8 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Int
 
+from seacage import campaigns
 from seacage.cage import Cage
-from seacage.campaigns import (
-    Plan,
-    Timetable,
-    TruthParameters,
-    generated_current,
-    generated_waves,
-    virtual_field,
-)
 from seacage.conventions import InputError, Progress, no_progress
 from seacage.records import CampaignRecord, FieldRecord, Record, read_campaign
 from seacage.studies._split import split
@@ -53,16 +46,18 @@ class Recipe:
         return self.method == "simulate"
 
     @property
-    def plan(self) -> Plan:
+    def plan(self) -> campaigns.Plan:
         """The paper's sea states, the last ones held out; or currents alone, all for training."""
         if self.in_time:
-            return Plan.named("paper", self.seed, self.cases + self.held_out_cases)
-        return Plan.sample(self.seed, self.cases, hs=(0.0, 0.0), name="current")
+            return campaigns.Plan.named("paper", self.seed, self.cases + self.held_out_cases)
+        return campaigns.Plan.sample(self.seed, self.cases, hs=(0.0, 0.0), name="current")
 
     @property
-    def held_out_plan(self) -> Plan:
+    def held_out_plan(self) -> campaigns.Plan:
         """The same currents, drawn with another seed."""
-        return Plan.sample(self.seed + 1, self.held_out_cases, hs=(0.0, 0.0), name="held out")
+        return campaigns.Plan.sample(
+            self.seed + 1, self.held_out_cases, hs=(0.0, 0.0), name="held out"
+        )
 
     @property
     def training(self) -> Training:
@@ -89,7 +84,7 @@ class Chain:
     # Folder of a virtual field, with its truth in ``truth``, to take in place of the recipe's
     given_field: Path | None = None
     # Differences of the recipe's virtual field; None for those that come with seacage
-    hidden: TruthParameters | None = None
+    hidden: campaigns.TruthParameters | None = None
     workers: int | None = None  # processes for simulations; None for one per core
     progress: Progress = no_progress  # called as (stage, done, total)
 
@@ -155,8 +150,8 @@ class Chain:
         return Stages(folder=self.folder)
 
     @property
-    def _hidden(self) -> TruthParameters:
-        return TruthParameters.read() if self.hidden is None else self.hidden
+    def _hidden(self) -> campaigns.TruthParameters:
+        return campaigns.TruthParameters.read() if self.hidden is None else self.hidden
 
     @property
     def _truth_settings(self) -> dict[str, object]:
@@ -207,7 +202,7 @@ class Chain:
         rows = np.flatnonzero(whole.converged)
         return (select_cases(whole, rows[:-count]), select_cases(whole, rows[-count:]))
 
-    def _run(self, stage: str, plan: Plan) -> CampaignRecord:
+    def _run(self, stage: str, plan: campaigns.Plan) -> CampaignRecord:
         return self.stages.ensure_campaign(
             stage,
             self.cage,
@@ -220,13 +215,13 @@ class Chain:
 
     def _make_field(self, begun: Path) -> None:
         recipe = self.recipe
-        buoy = generated_current(recipe.seed, start=recipe.start, days=recipe.days)
+        buoy = campaigns.generated_current(recipe.seed, start=recipe.start, days=recipe.days)
         if not recipe.in_time:
             self._settle_field(begun, buoy)
             return
         # To the last reading, and an hour on.
-        waves = generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0)
-        timetable = Timetable.over(buoy, one_in=recipe.one_in)
+        waves = campaigns.generated_waves(recipe.seed, start=recipe.start, days=recipe.days + 1.0)
+        timetable = campaigns.Timetable.over(buoy, one_in=recipe.one_in)
         self._write_field(begun, buoy, waves=waves, timetable=timetable, kept=begun / "stretches")
 
     def _settle_field(self, begun: Path, buoy: Record) -> None:
@@ -234,7 +229,7 @@ class Chain:
         self._write_field(begun, buoy, method="settle", kept=kept)
 
     def _write_field(self, begun: Path, buoy: Record, **how: Any) -> None:
-        made = virtual_field(
+        made = campaigns.virtual_field(
             self.cage,
             buoy,
             hidden=self._hidden,

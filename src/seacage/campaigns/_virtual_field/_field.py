@@ -5,7 +5,7 @@ from collections.abc import Generator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Float, Shaped
@@ -119,15 +119,9 @@ def virtual_field(
     events or a timetable for a settled field.
     """
     if method == "simulate":
+        times = _in_time(buoy, every_s, timetable)
         request = FieldRequest(
-            cage=cage,
-            buoy=buoy,
-            time=reading_times(buoy, every_s, usual_s=2.0),
-            hidden=hidden,
-            seed=seed,
-            waves=waves,
-            events=events,
-            timetable=timetable or Timetable.over(buoy),
+            cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
         )
         with _folder(kept) as folder:
             stretches = simulate_share(request, folder, workers=workers, progress=progress)
@@ -169,17 +163,17 @@ def virtual_field_share(
     ``kept``: folder of the finished stretches.
     ``share``: which share, from 0, and of how many.
     """
+    times = _in_time(buoy, every_s, timetable)
     request = FieldRequest(
-        cage=cage,
-        buoy=buoy,
-        time=reading_times(buoy, every_s, usual_s=2.0),
-        hidden=hidden,
-        seed=seed,
-        waves=waves,
-        events=events,
-        timetable=timetable or Timetable.over(buoy),
+        cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
     )
     simulate_share(request, Path(kept), share=share, workers=workers, progress=progress)
+
+
+def _in_time(buoy: Record, every_s: float | None, timetable: Timetable | None) -> dict[str, Any]:
+    """Times of a request's readings and stretches, as given or as usual."""
+    time = reading_times(buoy, every_s, usual_s=2.0)
+    return {"time": time, "timetable": timetable or Timetable.over(buoy)}
 
 
 @contextmanager

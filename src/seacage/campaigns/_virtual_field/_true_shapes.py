@@ -66,16 +66,12 @@ def true_shapes(
 
     Parameters
     ----------
-    cage
-        As drawn.
-    hidden
-        How it truly is.
+    cage, hidden, workers
+        As for ``virtual_field``.
     seeds
         One record each.
     cases
         Times of each record.
-    workers
-        Processes; None for one per available core. The numbers do not depend on it.
     progress
         Called as ("shape error", done, total) in cases.
     """

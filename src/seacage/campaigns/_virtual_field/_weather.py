@@ -7,6 +7,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Float
 
+from seacage import ocean
 from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._interpolation import Even
 from seacage.campaigns._virtual_field._truth_parameters import (
@@ -18,15 +19,6 @@ from seacage.campaigns._virtual_field._truth_parameters import (
 from seacage.campaigns._waves import shortest_period, usable_waves
 from seacage.conventions import InputError, compass, towards
 from seacage.dynamics import AbstractWeather
-from seacage.ocean import (
-    CurrentProfile,
-    SeaState,
-    WaveDraw,
-    Waves,
-    pressure_head,
-    turn_vectors,
-    wavenumber,
-)
 from seacage.records import Record
 
 PerPanel = Float[np.ndarray, " panel"]
@@ -42,16 +34,16 @@ _RIPPLE = 1.0  # shortest peak period: a flat sea has a frequency too [s]
 class TrueWaves:
     """Waves that stay the same ones while their sea and the current change."""
 
-    draw: WaveDraw  # what chance decided about them
+    draw: ocean.WaveDraw  # what chance decided about them
     sea: Even  # hs [m], Tp [s] and, (east, north), where the waves go
     phase: Even  # of each at the origin, never folded [rad]
     depth: float  # of the water [m]
 
-    def at(self, second: float) -> Waves:
+    def at(self, second: float) -> ocean.Waves:
         """Waves whose time 0 is then, and that meet those of a minute later."""
         hs, tp, east, north = self.sea.at(second).tolist()
         came = float(compass(np.array([-east, -north])))
-        sea = SeaState(current_speed=0.0, current_to=0.0, hs=hs, tp=tp, wave_from=came)
+        sea = ocean.SeaState(current_speed=0.0, current_to=0.0, hs=hs, tp=tp, wave_from=came)
         now = self.phase.at(second, held=False)
         later = self.phase.at(second + _MINUTE, held=False)
         return replace(
@@ -94,7 +86,7 @@ class Weather(AbstractWeather):
         stronger, turned = self.swing.at(second)
         factor = own.factor + own.factor_sd * stronger * deep
         turn = own.turned_deg + own.turned_sd_deg * turned * deep
-        profile = CurrentProfile(
+        profile = ocean.CurrentProfile(
             depth=own.depth_m,
             factor=tuple(np.maximum(factor, 0.0).tolist()),
             turned=tuple(turn.tolist()),
@@ -102,7 +94,7 @@ class Weather(AbstractWeather):
         velocity = profile.velocity(self.surface.at(second))
         return velocity if self.shear is None else velocity + np.outer(deep, self.shear.at(second))
 
-    def waves(self, second: float) -> Waves:
+    def waves(self, second: float) -> ocean.Waves:
         """For the minute from then on, whose time 0 is then."""
         return self.sea.at(second)
 
@@ -122,7 +114,7 @@ class Weather(AbstractWeather):
         time = second.reshape(len(second), *(1,) * (position.ndim - 2))
         minutes, firsts = np.unique(np.floor(second / _MINUTE), return_index=True)
         heads = [
-            pressure_head(self.waves(minute * _MINUTE), there, then - minute * _MINUTE)
+            ocean.pressure_head(self.waves(minute * _MINUTE), there, then - minute * _MINUTE)
             for minute, there, then in zip(
                 minutes, np.split(position, firsts[1:]), np.split(time, firsts[1:]), strict=True
             )
@@ -172,7 +164,7 @@ def true_weather(
     swing = wandering(deep, len(minutes), sd=1.0, step_s=_MINUTE, memory_s=memory)
     sheared = shear(hidden.profile, len(minutes), _MINUTE, seed=seed)
     components = 0 if waves is None else hidden.waves.components
-    draw = WaveDraw.sample(surface, components=components, spreading=hidden.waves.spreading)
+    draw = ocean.WaveDraw.sample(surface, components=components, spreading=hidden.waves.spreading)
     sea = _sea(waves, buoy.time[0], minutes)
     phase = _phase(draw, sea, current.at(minutes[:-1] + _MINUTE / 2.0), depth)
     return Weather(
@@ -212,7 +204,7 @@ def _sea(waves: Record | None, start: np.datetime64, seconds: PerRow) -> Float[n
 
 
 def _phase(
-    draw: WaveDraw,
+    draw: ocean.WaveDraw,
     sea: Float[np.ndarray, "row 4"],
     current: Float[np.ndarray, "step 2"],
     depth: float,
@@ -222,10 +214,10 @@ def _phase(
     frequency = 2.0 * math.pi / middle[:, 1:2] * draw.frequency
     # by the compass, since a sea that turns right round passes through no direction at all
     ahead = towards(np.ones(len(middle)), compass(middle[:, 2:]))
-    right = turn_vectors(ahead, np.array(math.pi / 2.0))
+    right = ocean.turn_vectors(ahead, np.array(math.pi / 2.0))
     along, across = (np.sum(way * current, axis=1) for way in (ahead, right))
     speed = np.outer(along, np.cos(draw.turned)) + np.outer(across, np.sin(draw.turned))
-    frequency += wavenumber(frequency, depth=depth) * speed
+    frequency += ocean.wavenumber(frequency, depth=depth) * speed
     turned = np.cumsum(frequency * _MINUTE, axis=0)
     return draw.phase - np.vstack([np.zeros_like(draw.phase), turned])
 

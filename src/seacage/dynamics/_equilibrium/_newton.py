@@ -7,14 +7,7 @@ from jaxtyping import Float
 
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._parts._assembly import Assembly, Bars, Bends, Cylinders, Panels
-from seacage.dynamics._physics._loads import (
-    LEVEL,
-    SteadyFlow,
-    bar_force,
-    nodal_force,
-    openness,
-    wet_share,
-)
+from seacage.dynamics._physics import _loads as loads
 
 Node3 = Float[np.ndarray, "node 3"]
 PerBar = Float[np.ndarray, " bar"]
@@ -22,7 +15,9 @@ Block = Float[np.ndarray, "part 3 3"]
 Entries = tuple[np.ndarray, np.ndarray, np.ndarray]
 
 
-def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance) -> Balancing:
+def nearer(
+    assembly: Assembly, flow: loads.SteadyFlow, state: Balancing, balance: Balance
+) -> Balancing:
     """One case after one iteration; one that is done, or lost, stays as it is.
 
     Bars are some thousand times stiffer along than across and go slack and taut, which a
@@ -49,7 +44,7 @@ def nearer(assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Bala
         return replace(state, residual=residual)
     bars, x = assembly.bars, state.position[0]
     law = _linear_law(bars, state, balance)
-    force = nodal_force(assembly, flow, state.position)[0] - bar_force(bars, x[None])[0]
+    force = loads.nodal_force(assembly, flow, state.position)[0] - loads.bar_force(bars, x[None])[0]
     pull = (law.tension + law.lack)[:, None] * law.unit
     np.add.at(force, bars.ends, np.stack([pull, -pull], axis=1))
     slope = _slope(assembly, flow, state, balance, law)
@@ -103,7 +98,7 @@ def _linear_law(bars: Bars, state: Balancing, balance: Balance) -> _LinearLaw:
 
 
 def _slope(
-    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, law: _LinearLaw
+    assembly: Assembly, flow: loads.SteadyFlow, state: Balancing, balance: Balance, law: _LinearLaw
 ) -> Float[np.ndarray, "row row"]:
     """The tangent, shifted, of the coordinates that may move [N/m]."""
     x = state.position[0]
@@ -118,10 +113,10 @@ def _sign(slope: Float[np.ndarray, "row row"]) -> Float[np.ndarray, "1"]:
 
 
 def _residual(
-    assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance
+    assembly: Assembly, flow: loads.SteadyFlow, state: Balancing, balance: Balance
 ) -> Float[np.ndarray, "1"]:
     """Largest force of the true law on a free node [N]."""
-    force = nodal_force(assembly, flow, state.position)[0]
+    force = loads.nodal_force(assembly, flow, state.position)[0]
     return np.array([np.linalg.norm(force[balance.free], axis=1).max()])
 
 
@@ -140,7 +135,7 @@ def hooke(bars: Bars, position: Node3) -> tuple[PerBar, PerBar]:
 
 
 def tangent(
-    assembly: Assembly, flow: SteadyFlow, position: Node3, *, rate: PerBar, tension: PerBar
+    assembly: Assembly, flow: loads.SteadyFlow, position: Node3, *, rate: PerBar, tension: PerBar
 ) -> list[Entries]:
     """Tangent stiffness −df/dx, in blocks of two nodes [N/m]."""
     return [
@@ -215,7 +210,7 @@ def _turn_slopes(bends: Bends, position: Node3) -> tuple[Float[np.ndarray, "bend
     return -by_first, by_first - by_second, by_second
 
 
-def _panels(assembly: Assembly, flow: SteadyFlow, position: Node3) -> list[Entries]:
+def _panels(assembly: Assembly, flow: loads.SteadyFlow, position: Node3) -> list[Entries]:
     """Stiffness of a panel's load F = w q A ((C_D − L m·u) u + L m) as its corners move.
 
     A is the area as cut; m the normal times how open the panel is. Its wet share w falls as
@@ -229,7 +224,7 @@ def _panels(assembly: Assembly, flow: SteadyFlow, position: Node3) -> list[Entri
     side = np.where(np.sum(area_vector * u, axis=1) < 0.0, -1.0, 1.0)
     area = np.maximum(np.linalg.norm(area_vector, axis=1), 1e-12)
     normal = area_vector * (side / area)[:, None]
-    opened, opens = openness(panels, area)
+    opened, opens = loads.openness(panels, area)
     straight = np.minimum(np.sum(normal * u, axis=1), 1.0)
     along = opened * straight
     x = along + 0.5 * (1.0 - opened)
@@ -249,7 +244,7 @@ def _panels(assembly: Assembly, flow: SteadyFlow, position: Node3) -> list[Entri
     turned += _outer(facing, lift_x[:, None] * x_slope)
     across = over[..., None] * (np.eye(3) - _outer(normal, normal))
     turned += lift[:, None, None] * (across + opens[:, None, None] * _outer(normal, normal))
-    wet = wet_share(panels, position[None])[0]
+    wet = loads.wet_share(panels, position[None])[0]
     pressure = flow.pressure[0] * panels.outline
     turned *= (wet * pressure * side)[:, None, None]
     by_first = -0.5 * np.cross(turned, second[:, None, :])
@@ -268,7 +263,7 @@ def _dry_slopes(
     """Stiffness of the wet share of loads on panels that are all wet."""
     height = position[panels.corners, 2]
     above, span = height > 0.0, np.abs(height).sum(axis=1)
-    least = LEVEL * np.sqrt(panels.outline)
+    least = loads.LEVEL * np.sqrt(panels.outline)
     out = np.where(span > least, (height * above).sum(axis=1) / np.maximum(span, least), 0.0)
     falls = np.where(above, 1.0 - out[:, None], out[:, None])
     falls = falls / np.maximum(span, least)[:, None]
@@ -281,7 +276,7 @@ def _dry_slopes(
     return entries
 
 
-def _cylinders(cylinders: Cylinders, flow: SteadyFlow, position: Node3) -> list[Entries]:
+def _cylinders(cylinders: Cylinders, flow: loads.SteadyFlow, position: Node3) -> list[Entries]:
     """Stiffness of a pipe's drag F = ½ q w l |v| v on either end, v = u − (u·t) t, as it turns."""
     i, j = cylinders.ends.T
     along = position[j] - position[i]

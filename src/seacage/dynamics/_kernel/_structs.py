@@ -72,11 +72,7 @@ class Struct(ctypes.Structure):
 class _Row(ctypes.Structure):
     """A field of a struct in C's own table; the last row has no name and the struct's size."""
 
-    _fields_ = (
-        ("name", ctypes.c_char_p),
-        ("offset", ctypes.c_int32),
-        ("size", ctypes.c_int32),
-    )
+    _fields_ = (("name", ctypes.c_char_p), ("offset", ctypes.c_int32), ("size", ctypes.c_int32))
 
 
 def check_layout(library: ctypes.CDLL, struct: type[Struct]) -> None:

@@ -10,16 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import WATER_DENSITY, Rows
-from seacage.dynamics._parts._assembly import (
-    Assembly,
-    Bars,
-    Bends,
-    Cylinders,
-    Floats,
-    Ground,
-    Panels,
-    Springs,
-)
+from seacage.dynamics._parts import _assembly as assemblies
 
 Nodal = Float[np.ndarray, "case node 3"]
 DYNAMIC = 0.5 * WATER_DENSITY  # ½ρ [kg/m3]
@@ -54,7 +45,7 @@ class SteadyFlow(Rows):
     pipe_pressure: Float[np.ndarray, " case"]  # ½ ρ |U|² on the pipes; 0 leaves their drag out [Pa]
 
 
-def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
+def nodal_force(assembly: assemblies.Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
     """All forces on all nodes: zero everywhere is an equilibrium [N]."""
     force = net_force(assembly.panels, flow, position)
     force += bar_force(assembly.bars, position)
@@ -67,7 +58,7 @@ def nodal_force(assembly: Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
     return force
 
 
-def bar_tension(bars: Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
+def bar_tension(bars: assemblies.Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
     """Tension of linear elastic bars; ropes and twines go slack [N]."""
     along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
     strain = np.linalg.norm(along, axis=-1) / bars.length - 1.0
@@ -75,7 +66,7 @@ def bar_tension(bars: Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
     return np.where(bars.pushed, tension, np.maximum(tension, 0.0))
 
 
-def bar_force(bars: Bars, position: Nodal) -> Nodal:
+def bar_force(bars: assemblies.Bars, position: Nodal) -> Nodal:
     """Pull of the bars on their ends [N]."""
     along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
     unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
@@ -83,7 +74,7 @@ def bar_force(bars: Bars, position: Nodal) -> Nodal:
     return _gather(position, bars.ends, np.stack([pull, -pull], axis=2))
 
 
-def bend_force(bends: Bends, position: Nodal) -> Nodal:
+def bend_force(bends: assemblies.Bends, position: Nodal) -> Nodal:
     """Resistance of a pipe to bending, from the turn between its segments [N].
 
     Energy 2 (EI/l)(1 − c)/(1 + c) with c the cosine of the turn: the squared curvature
@@ -117,14 +108,14 @@ def bend_force(bends: Bends, position: Nodal) -> Nodal:
     return _gather(position, bends.nodes, shares)
 
 
-def net_force(panels: Panels, flow: SteadyFlow, position: Nodal) -> Nodal:
+def net_force(panels: assemblies.Panels, flow: SteadyFlow, position: Nodal) -> Nodal:
     """The water's load on the netting, shared among the corners of each panel [N]."""
     load = panel_load(panels, flow, position)
     return _gather(position, panels.corners, load[:, :, None] * panels.share[..., None])
 
 
 def panel_load(
-    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
+    panels: assemblies.Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
 ) -> Float[np.ndarray, "case panel 3"]:
     """Drag and lift of each panel: ½ρ C_D A|u|u and ½ρ C_L A|u|² along (u×n)×u [N].
 
@@ -136,7 +127,7 @@ def panel_load(
 
 
 def wet_share(
-    panels: Panels,
+    panels: assemblies.Panels,
     position: Float[np.ndarray, "#case node 3"],
     elevation: Float[np.ndarray, "case node"] | None = None,
 ) -> Float[np.ndarray, "#case panel"]:
@@ -156,7 +147,7 @@ def wet_share(
     return 1.0 - out / span
 
 
-def openness(panels: Panels, area: Values) -> tuple[Values, Values]:
+def openness(panels: assemblies.Panels, area: Values) -> tuple[Values, Values]:
     """How open panels of some present area are, and how that grows with the area [-, 1/m2].
 
     1 down to a tenth of the outline, from where it falls to 0 of what is folded to a line.
@@ -167,7 +158,7 @@ def openness(panels: Panels, area: Values) -> tuple[Values, Values]:
 
 
 def screen_load(
-    panels: Panels,
+    panels: assemblies.Panels,
     position: Float[np.ndarray, "#case node 3"],
     u: Float[np.ndarray, "case #panel 3"],
     flow: SteadyFlow,
@@ -197,7 +188,7 @@ def screen_load(
     return (flow.pressure * panels.outline)[..., None] * coefficients
 
 
-def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:
+def cylinder_force(cylinders: assemblies.Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:
     """Cross-flow drag on the pipes [N]; the cross-flow principle, Hoerner (1965)."""
     along = position[:, cylinders.ends[:, 1]] - position[:, cylinders.ends[:, 0]]
     length = np.linalg.norm(along, axis=-1, keepdims=True)
@@ -211,7 +202,9 @@ def cylinder_force(cylinders: Cylinders, flow: SteadyFlow, position: Nodal) -> N
 
 
 def float_force(
-    floats: Floats, position: Nodal, elevation: Float[np.ndarray, "case node"] | None = None
+    floats: assemblies.Floats,
+    position: Nodal,
+    elevation: Float[np.ndarray, "case node"] | None = None,
 ) -> Nodal:
     """Buoyancy of floats [N]; the surface lies at its elevation at each node [m]."""
     surface = 0.0 if elevation is None else elevation[:, floats.nodes]
@@ -221,20 +214,22 @@ def float_force(
 
 
 def float_lift(
-    floats: Floats, height: Float[np.ndarray, "case float"]
+    floats: assemblies.Floats, height: Float[np.ndarray, "case float"]
 ) -> Float[np.ndarray, "case float"]:
     """Lift of floats over the surface: none out of the water, no more than all when drowned [N]."""
     return floats.stiffness * np.clip(floats.draft - height, 0.0, floats.height)
 
 
-def line_tension(assembly: Assembly, position: Nodal) -> Float[np.ndarray, "case line"]:
+def line_tension(assembly: assemblies.Assembly, position: Nodal) -> Float[np.ndarray, "case line"]:
     """Tension of the reported lines at rest in still water, that of buoys' chains last [N]."""
     buoys = assembly.floats.rows(assembly.line_floats)
     pull = bar_tension(assembly.bars.rows(assembly.line_bars), position)
     return np.hstack([pull, float_lift(buoys, position[:, buoys.nodes, 2])])
 
 
-def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position: Nodal) -> Nodal:
+def spring_force(
+    springs: assemblies.Springs, design: Float[np.ndarray, "node 3"], position: Nodal
+) -> Nodal:
     """Pull of the frame corners' springs [N]."""
     force = np.zeros_like(position)
     moved = position[:, springs.nodes] - design[springs.nodes]
@@ -242,7 +237,7 @@ def spring_force(springs: Springs, design: Float[np.ndarray, "node 3"], position
     return force
 
 
-def bed_force(ground: Ground, position: Nodal) -> Nodal:
+def bed_force(ground: assemblies.Ground, position: Nodal) -> Nodal:
     """Push of the sea bed on what sinks into it; friction is left out [N]."""
     force = np.zeros_like(position)
     sunk = np.maximum(ground.level - position[:, ground.nodes, 2], 0.0)
@@ -251,7 +246,7 @@ def bed_force(ground: Ground, position: Nodal) -> Nodal:
 
 
 def total_net_force(
-    panels: Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
+    panels: assemblies.Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
 ) -> Float[np.ndarray, "case 3"]:
     """The water's load on the whole netting [N]."""
     return panel_load(panels, flow, position).sum(axis=1)

@@ -30,16 +30,9 @@ from seacage.service._http._dependencies import (
 from seacage.service._http._history import history_between
 from seacage.service._live._answers import sample_of, shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
+from seacage.service._schemas import _samples as schemas
 from seacage.service._schemas._cages import Cages, Topology
 from seacage.service._schemas._history import History
-from seacage.service._schemas._samples import (
-    AggregatesOut,
-    Receipt,
-    SamplesIn,
-    SamplesOut,
-    read_samples,
-    time_of,
-)
 from seacage.service._schemas._service import Health
 from seacage.service._schemas._state import Shape, State
 
@@ -96,23 +89,25 @@ async def list_cages(request: Request) -> Cages:
 
 
 @cages.post("/{cage}/samples", status_code=201, dependencies=may_ingest, responses=WRITE)
-async def post_samples(request: Request, body: SamplesIn, live: Live) -> Receipt:
+async def post_samples(request: Request, body: schemas.SamplesIn, live: Live) -> schemas.Receipt:
     """Take samples in any order; 201 says that those accepted are on disk.
 
     A sample is known by (stream, t, seq): sent again it counts as a duplicate and changes
     nothing. Of those rejected, the ones with ``retry`` are ahead of the service's clock: send
     them again once their time has come.
     """
-    samples, rejected = read_samples(body.samples, live.streams, until=live.latest_allowed)
+    samples, rejected = schemas.read_samples(body.samples, live.streams, until=live.latest_allowed)
     for ahead in (body.samples[one.index] for one in rejected if one.retry):
-        live.refuse_ahead(ahead.stream, time_of(ahead))
+        live.refuse_ahead(ahead.stream, schemas.time_of(ahead))
     new = await live.take(samples)
-    receipt = Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
+    receipt = schemas.Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
     _count_samples(request, live.name, receipt)
     return receipt
 
 
-@cages.get("/{cage}/samples", dependencies=may_read_rows, responses=READ, response_model=SamplesOut)
+@cages.get(
+    "/{cage}/samples", dependencies=may_read_rows, responses=READ, response_model=schemas.SamplesOut
+)
 def get_samples(
     live: Live, stream: Stream = None, start: From = None, end: To = None, limit: Limit = 1000
 ) -> StreamingResponse:
@@ -122,10 +117,10 @@ def get_samples(
 
 
 @cages.get("/{cage}/latest", dependencies=may_read, responses=READ)
-def get_latest(live: Live, at: At = None) -> SamplesOut:
+def get_latest(live: Live, at: At = None) -> schemas.SamplesOut:
     """Give back the newest sample of every stream, in one call."""
     latest = live.store.latest(live.name, at=at)
-    return SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+    return schemas.SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
 
 
 @cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
@@ -137,7 +132,7 @@ def get_aggregates(
     start: From = None,
     end: To = None,
     limit: Limit = 1000,
-) -> AggregatesOut:
+) -> schemas.AggregatesOut:
     """Say what the usable readings of each minute, or of ten, were: count, mean, least and most.
 
     A direction has no mean; ask for ``current_east_m_s`` and ``current_north_m_s`` instead.
@@ -145,7 +140,7 @@ def get_aggregates(
     aggregates = live.store.aggregates(
         live.name, stream=stream, key=key, width_s=width_s, start=start, end=end, limit=limit
     )
-    return AggregatesOut(stream=stream, key=key, width_s=width_s, aggregates=aggregates)
+    return schemas.AggregatesOut(stream=stream, key=key, width_s=width_s, aggregates=aggregates)
 
 
 @cages.get("/{cage}/state", dependencies=may_read, responses=READ)
@@ -205,7 +200,7 @@ def _history_text(history: History) -> Iterator[str]:
     yield "}"
 
 
-def _count_samples(request: Request, cage: str, receipt: Receipt) -> None:
+def _count_samples(request: Request, cage: str, receipt: schemas.Receipt) -> None:
     samples = request.app.state.service.metrics.samples
     samples.labels(cage, "accepted").inc(receipt.accepted)
     samples.labels(cage, "duplicate").inc(receipt.duplicates)

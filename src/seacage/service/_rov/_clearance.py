@@ -7,17 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.service._schemas._clearance import (
-    ClearanceAnswer,
-    ClearanceQuery,
-    FrameName,
-    InspectionAnswer,
-    InspectionQuery,
-    PathAnswer,
-    Place,
-    PointClearance,
-    Waypoint,
-)
+from seacage.service._schemas import _clearance as schemas
 from seacage.twin import Clearance, InspectionPath, PredictedNet, inspection_path
 
 _STATED = 1.0  # the distance that every answer is about [m]
@@ -25,19 +15,19 @@ _DECIMALS = 4  # of metres and probabilities: a tenth of a millimetre
 Points = Float[np.ndarray, "point 3"]
 
 
-def clearance_answer(net: PredictedNet, query: ClearanceQuery) -> ClearanceAnswer:
+def clearance_answer(net: PredictedNet, query: schemas.ClearanceQuery) -> schemas.ClearanceAnswer:
     """Say how far points, and a path, are from a net."""
     point = local_points(net.cage, query)
     stated = net.clearance(point, below=_STATED)
     other = stated if query.below_m == _STATED else net.clearance(point, below=query.below_m)
-    return ClearanceAnswer(
+    return schemas.ClearanceAnswer(
         **_about(net, query.frame, query.below_m),
         points=_points(net, query.frame, stated, other),
         path=_path(net, query, point) if query.as_path else None,
     )
 
 
-def inspection_of(net: PredictedNet, query: InspectionQuery) -> InspectionPath:
+def inspection_of(net: PredictedNet, query: schemas.InspectionQuery) -> InspectionPath:
     """Lay the way that was asked for."""
     return inspection_path(
         net,
@@ -51,7 +41,9 @@ def inspection_of(net: PredictedNet, query: InspectionQuery) -> InspectionPath:
     )
 
 
-def inspection_answer(net: PredictedNet, query: InspectionQuery) -> InspectionAnswer:
+def inspection_answer(
+    net: PredictedNet, query: schemas.InspectionQuery
+) -> schemas.InspectionAnswer:
     """Say where to swim along a net, and where to look."""
     way = inspection_of(net, query)
     columns = zip(
@@ -67,18 +59,18 @@ def inspection_answer(net: PredictedNet, query: InspectionQuery) -> InspectionAn
         _none_where_unknown(net, way.clearance.p_below),
         strict=True,
     )
-    names = list(Waypoint.model_fields)
-    return InspectionAnswer(
+    names = list(schemas.Waypoint.model_fields)
+    return schemas.InspectionAnswer(
         **_about(net, query.frame, query.below_m),
-        waypoints=[Waypoint(**dict(zip(names, row, strict=True))) for row in columns],
+        waypoints=[schemas.Waypoint(**dict(zip(names, row, strict=True))) for row in columns],
         parts=int(way.part[-1]) + 1,
         left_out=way.left_out,
     )
 
 
 def _points(
-    net: PredictedNet, frame: FrameName, stated: Clearance, other: Clearance
-) -> list[PointClearance]:
+    net: PredictedNet, frame: schemas.FrameName, stated: Clearance, other: Clearance
+) -> list[schemas.PointClearance]:
     columns = zip(
         _round(stated.distance),
         stated.inside.tolist(),
@@ -92,14 +84,15 @@ def _points(
         _none_where_unknown(net, stated.p_through),
         strict=True,
     )
-    names = [name for name in PointClearance.model_fields if name != "state_age_s"]
+    names = [name for name in schemas.PointClearance.model_fields if name != "state_age_s"]
     age_s = round(net.age_s, 3)
     return [
-        PointClearance(state_age_s=age_s, **dict(zip(names, row, strict=True))) for row in columns
+        schemas.PointClearance(state_age_s=age_s, **dict(zip(names, row, strict=True)))
+        for row in columns
     ]
 
 
-def _path(net: PredictedNet, query: ClearanceQuery, point: Points) -> PathAnswer:
+def _path(net: PredictedNet, query: schemas.ClearanceQuery, point: Points) -> schemas.PathAnswer:
     stated = net.along(point, below=_STATED)
     other = stated if query.below_m == _STATED else net.along(point, below=query.below_m)
     here = np.array([stated.closest])
@@ -108,7 +101,7 @@ def _path(net: PredictedNet, query: ClearanceQuery, point: Points) -> PathAnswer
     (at_place,) = places_of(net.cage, query.frame, stated.point[here])
     p = np.array([stated.p_below, other.p_below, other.p_least, other.p_most])
     names = ("p_below_1m", "p_below", "p_least", "p_most")
-    return PathAnswer(
+    return schemas.PathAnswer(
         length_m=round(float(stated.along[-1]), _DECIMALS),
         looked_at=len(stated.point),
         along_m=round(float(stated.along[stated.closest]), _DECIMALS),
@@ -119,7 +112,7 @@ def _path(net: PredictedNet, query: ClearanceQuery, point: Points) -> PathAnswer
     )
 
 
-def _about(net: PredictedNet, frame: FrameName, below: float) -> dict[str, Any]:
+def _about(net: PredictedNet, frame: schemas.FrameName, below: float) -> dict[str, Any]:
     return {
         "t": net.t,
         "frame": frame,
@@ -139,7 +132,7 @@ def _round(values: Float[np.ndarray, "point *rest"]) -> list[Any]:
     return values.round(_DECIMALS).tolist()
 
 
-def local_points(cage: Cage, query: ClearanceQuery) -> Points:
+def local_points(cage: Cage, query: schemas.ClearanceQuery) -> Points:
     """East, north and up of the cage's centre [m].
 
     Raises InputError: latitudes for a cage that does not say where it lies.
@@ -151,14 +144,16 @@ def local_points(cage: Cage, query: ClearanceQuery) -> Points:
     return in_frame(query.frame, np.array(query.points_m, dtype=float).reshape(-1, 3))
 
 
-def in_frame(frame: FrameName, vector: Points) -> Points:
+def in_frame(frame: schemas.FrameName, vector: Points) -> Points:
     """Turn east, north, up into a frame's own axes, or those back: the two are one turn."""
     if frame == "ned":
         return vector[:, [1, 0, 2]] * np.array([1.0, 1.0, -1.0])
     return vector
 
 
-def places_of(cage: Cage, frame: FrameName, position: Points) -> Sequence[Place | None]:
+def places_of(
+    cage: Cage, frame: schemas.FrameName, position: Points
+) -> Sequence[schemas.Place | None]:
     """Latitude, longitude and depth, where a frame has them."""
     if frame != "wgs84":
         return [None] * len(position)
@@ -168,6 +163,6 @@ def places_of(cage: Cage, frame: FrameName, position: Points) -> Sequence[Place 
         for one, decimals in zip(cage.plane.geographic(position), (8, 8, 3), strict=True)
     ]
     return [
-        Place(latitude_deg=latitude, longitude_deg=longitude, depth_m=depth)
+        schemas.Place(latitude_deg=latitude, longitude_deg=longitude, depth_m=depth)
         for latitude, longitude, depth in zip(*columns, strict=True)
     ]

@@ -61,9 +61,8 @@ def fidelity_study(
 
     Parameters
     ----------
-    out
-        Folder of ``report.html``, ``scores.json`` and the stages they were made from; after a
-        stop the work goes on where it was.
+    out, workers, progress
+        As for ``paper_study``.
     field
         Folder of a virtual field with its truth beside it in ``truth``; None makes one of 48
         days, settled and without waves.
@@ -76,10 +75,6 @@ def fidelity_study(
         on top. With waves a window costs half a second of a core.
     seed
         Of the choice of windows, the low fidelity's waves, the searches and the draws.
-    workers
-        Processes for simulations; None for one per core.
-    progress
-        Called as (stage, done, total).
     """
     out, report = Path(out), progress or no_progress
     stages = Stages(folder=out / "stages")

@@ -4,19 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from seacage import figures as drawings
 from seacage.conventions import Origin
-from seacage.figures import (
-    Contest,
-    ShapeView,
-    TrainingScores,
-    error_figure,
-    net_figure,
-    rows_figure,
-    shape_cases_figure,
-    shape_error_figure,
-    shape_views_figure,
-    training_scores_figure,
-)
 from seacage.ocean import SeaState
 from seacage.studies._chain import Chain
 from seacage.studies._held_out import comparison, display_span
@@ -98,7 +87,7 @@ def finding_values(scored: ScoredWays) -> dict[str, object]:
 def _draw_net(chain: Chain, scored: ScoredWays, sea: SeaState) -> str:
     answer = scored.twin.predict(sea)
     return embed(
-        net_figure(
+        drawings.net_figure(
             chain.cage, answer.node_position[0], bridle_tension=answer.bridle_low[0], sea=sea
         )
     )
@@ -119,7 +108,7 @@ def _draw_sensors(chain: Chain, scored: ScoredWays) -> list[dict[str, object]]:
         chain.progress("draw", len(drawn), total)
         if scores:
             readings = [scored.readings[score.sensor] for score in scores]
-            figure = rows_figure(
+            figure = drawings.rows_figure(
                 list(map(comparison, scores, readings)), list(map(display_span, readings))
             )
             drawn.append({"title": title, "scores": scores, "picture": embed(figure)})
@@ -134,7 +123,7 @@ def _draw_ways(ways: Sequence[WayScore]) -> str | None:
     sensors = ways[0].sensors
     low = np.array([one.minutes.low_mae for one in sensors])
     scores = {
-        way.name: TrainingScores(
+        way.name: drawings.TrainingScores(
             error=np.array([one.minutes.multi_mae for one in way.sensors]) / low,
             crps=np.array([one.minutes.crps for one in way.sensors]) / low,
             coverage=np.array([one.minutes.coverage for one in way.sensors]),
@@ -142,21 +131,23 @@ def _draw_ways(ways: Sequence[WayScore]) -> str | None:
         for way in ways
     }
     names = [one.sensor for one in sensors]
-    return embed(training_scores_figure(names, scores, origin=sensors[0].origin))
+    return embed(drawings.training_scores_figure(names, scores, origin=sensors[0].origin))
 
 
 def draw_wave_loads(loads: WaveLoads) -> str:
     """Errors of each statistic by method, a dot for each shackle."""
-    contests = list[Contest]()
+    contests = list[drawings.Contest]()
     for name in STATISTICS.values():
         some = [one.error for one in loads.scores if one.statistic == name]
         error = np.array([[one[method] for one in some] for method in METHODS])
         if some:
             none = np.full(len(METHODS), np.nan)
-            contests.append(Contest(title=name.capitalize(), error=error, coverage=none))
+            contests.append(drawings.Contest(title=name.capitalize(), error=error, coverage=none))
     label = f"Median error over the reading ({loads.scores[0].origin})"
     return embed(
-        error_figure([one.capitalize() for one in METHODS], contests, ours=(0, 1), label=label)
+        drawings.error_figure(
+            [one.capitalize() for one in METHODS], contests, ours=(0, 1), label=label
+        )
     )
 
 
@@ -166,7 +157,7 @@ def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> dict[str, str]:
     nets = [*(name for name in _NETS if name in shapes.scores), best]  # the paper's two, and ours
     errors = {name: shapes.scores[name].case_axis_mae for name in drawn}
     views = [
-        ShapeView(
+        drawings.ShapeView(
             title=_title(case),
             computed=case.computed,
             predicted={name: case.predicted[name] for name in nets},
@@ -174,9 +165,9 @@ def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> dict[str, str]:
         for case in shapes.cases
     ]
     figures = {
-        "cases": shape_cases_figure(errors),
-        "nets": shape_views_figure(views, chain.cage.edges),
-        "speeds": shape_error_figure(
+        "cases": drawings.shape_cases_figure(errors),
+        "nets": drawings.shape_views_figure(views, chain.cage.edges),
+        "speeds": drawings.shape_error_figure(
             shapes.current_speed, {name: errors[name].mean(axis=1) for name in nets}
         ),
     }

@@ -14,15 +14,7 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Progress
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
-from seacage.studies._paper._shape_models import (
-    CURRENT,
-    DEGREES,
-    SHAPE,
-    SHAPE_FOLDED,
-    WORDS,
-    Input,
-    ShapeModel,
-)
+from seacage.studies._paper import _shape_models as shape_models
 from seacage.studies._paper._shape_scores import ShapeScore, shape_score
 from seacage.studies._stages import Stages
 from seacage.surrogates import OverTime, Prediction, metocean_features
@@ -93,11 +85,11 @@ class ShapeStudy:
     @property
     def best(self) -> ShapeScore:
         """The process with a shared kernel with all inputs, folded where it can be."""
-        return self.scores.get(SHAPE_FOLDED, self.scores[SHAPE])
+        return self.scores.get(shape_models.SHAPE_FOLDED, self.scores[shape_models.SHAPE])
 
 
 def shape_study(
-    models: Sequence[ShapeModel],  # to compare
+    models: Sequence[shape_models.ShapeModel],  # to compare
     trial: ShapeTrial,  # their simulations
     stages: Stages,  # where answers are kept
     *,
@@ -111,7 +103,7 @@ def shape_study(
     scores: dict[str, ShapeScore] = {}
     for number, model in enumerate(models):
 
-        def make(begun: Path, model: ShapeModel = model, number: int = number) -> None:
+        def make(begun: Path, model: shape_models.ShapeModel = model, number: int = number) -> None:
             progress("shape", number, len(models))
             _make(begun, model, trial, progress)
             progress("shape", number + 1, len(models))
@@ -119,7 +111,7 @@ def shape_study(
         try:
             folder = stages.ensure("shape", _settings(model, trial), make, rooms=_ROOMS)
         except InputError as error:
-            if model.name != SHAPE_FOLDED:
+            if model.name != shape_models.SHAPE_FOLDED:
                 raise
             left_out = (*left_out, f"{model.name} is missing: {error}")  # not every cage can be
             continue
@@ -129,7 +121,7 @@ def shape_study(
             answers[model.name],
             trial.computed,
             collar=trial.cage.ring_nodes(0),
-            inputs=WORDS[model.inputs],
+            inputs=shape_models.WORDS[model.inputs],
             **cost,
         )
     return ShapeStudy(
@@ -143,7 +135,7 @@ def shape_study(
     )
 
 
-def _settings(model: ShapeModel, trial: ShapeTrial) -> dict[str, object]:
+def _settings(model: shape_models.ShapeModel, trial: ShapeTrial) -> dict[str, object]:
     return {
         "model": model.name,
         "inputs": list(model.inputs),
@@ -155,7 +147,9 @@ def _settings(model: ShapeModel, trial: ShapeTrial) -> dict[str, object]:
     }
 
 
-def _make(begun: Path, model: ShapeModel, trial: ShapeTrial, progress: Progress) -> None:
+def _make(
+    begun: Path, model: shape_models.ShapeModel, trial: ShapeTrial, progress: Progress
+) -> None:
     """Train a model, ask it, and keep its shapes and what they took."""
     x, test_features = (
         _features(_seas_of(one), model.inputs) for one in (trial.campaign, trial.held_out)
@@ -197,12 +191,12 @@ def _one_shape_ms(fitted: Any, test_features: Float[np.ndarray, "case feature"])
 
 
 def _features(
-    seas: Sequence[SeaState], inputs: tuple[Input, ...]
+    seas: Sequence[SeaState], inputs: tuple[shape_models.Input, ...]
 ) -> Float[np.ndarray, "case feature"]:
-    if inputs == DEGREES:
+    if inputs == shape_models.DEGREES:
         return np.array([[sea.current_speed, sea.current_to] for sea in seas])
     velocity = np.array([sea.current_velocity for sea in seas])
-    if inputs == CURRENT:
+    if inputs == shape_models.CURRENT:
         return metocean_features(velocity)
     return metocean_features(
         velocity,

@@ -6,14 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.surrogates._gp import (
-    AbstractKernel,
-    Columns,
-    SameCase,
-    StationaryKernel,
-    Sum,
-    register_kernels,
-)
+from seacage.surrogates import _gp as gp
 
 VECTORS = slice(2, 6)  # columns of ``case_inputs`` that turn: current and waves, east and north
 SAME_IMAGE = 1e-8  # of standardised inputs: rounding, far below the effect of any noise
@@ -21,7 +14,7 @@ NEW = -1.0  # number of a case that was not simulated
 
 
 @dataclass(frozen=True, slots=True)
-class CaseKernel(Sum):
+class CaseKernel(gp.Sum):
     """Of the sea, plus what the waves of a case have in common in all its images.
 
     ``other`` has one hyperparameter, the last one.
@@ -47,8 +40,8 @@ class CaseKernel(Sum):
         return seen.argmin(axis=2) if misfit < SAME_IMAGE else None
 
 
-def _with_case(of_sea: AbstractKernel, saved_as: str) -> CaseKernel:
-    return CaseKernel(of_sea, Columns(SameCase(), slice(-1, None)), saved_as)
+def _with_case(of_sea: gp.AbstractKernel, saved_as: str) -> CaseKernel:
+    return CaseKernel(of_sea, gp.Columns(gp.SameCase(), slice(-1, None)), saved_as)
 
 
 # Columns of ``case_inputs``, and of each the number of its length: a vector's components have one,
@@ -59,26 +52,26 @@ ROUGH_SEA, ROUGH_SEA_LENGTHS = slice(1, 9), (0, 1, 1, 2, 2, 3, 4, 5)
 
 # The mean goes by the current nearly alone, smoothly but for the speeds at which lines fall slack
 MEAN = _with_case(
-    Columns(
-        StationaryKernel("squared-exponential", alike=SEA_LENGTHS)
-        + StationaryKernel("matern-3/2", alike=SEA_LENGTHS),
+    gp.Columns(
+        gp.StationaryKernel("squared-exponential", alike=SEA_LENGTHS)
+        + gp.StationaryKernel("matern-3/2", alike=SEA_LENGTHS),
         SEA,
     )
-    + Columns(StationaryKernel("matern-3/2", alike=CURRENT_LENGTHS), CURRENT),
+    + gp.Columns(gp.StationaryKernel("matern-3/2", alike=CURRENT_LENGTHS), CURRENT),
     "mean-load-of-cases",
 )
 
 # What waves do. Loads per wave height change faster in low waves, so the root of Hs is taken. The
 # current along the waves counts beside its components, as drag goes by the sum of both velocities
 WAVE_EFFECT = _with_case(
-    Columns(
-        StationaryKernel("matern-5/2", alike=ROUGH_SEA_LENGTHS)
-        + StationaryKernel("matern-3/2", alike=ROUGH_SEA_LENGTHS),
+    gp.Columns(
+        gp.StationaryKernel("matern-5/2", alike=ROUGH_SEA_LENGTHS)
+        + gp.StationaryKernel("matern-3/2", alike=ROUGH_SEA_LENGTHS),
         ROUGH_SEA,
     ),
     "wave-loads-of-cases",
 )
-register_kernels(MEAN, WAVE_EFFECT)
+gp.register_kernels(MEAN, WAVE_EFFECT)
 
 
 def case_inputs(

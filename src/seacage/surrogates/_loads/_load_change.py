@@ -43,20 +43,10 @@ class LoadChange:
     ) -> Self:
         """Learn from features, loads before and after, and quantities of the state after.
 
-        Parameters
-        ----------
-        x
-            One row per case, from ``sea_features``; all with waves.
-        before, after
-            Loads of each case, in the same waves.
-        state
-            What else is wanted of the state after; images leave it as it is.
-        symmetry
-            Images that leave the change as it is, such as a mirror through the parted line.
-        restarts
-            Random starts of each hyperparameter search beside the deterministic one.
-        seed
-            Of the random starts.
+        ``x``, ``restarts``, ``seed``: as for ``LoadGP``.
+        ``before``, ``after``: loads of each case, in the same waves.
+        ``state``: what else is wanted of the state after; images leave it as it is.
+        ``symmetry``: images that leave the change as it is, as a mirror through the parted line.
         """
         outputs = {
             "mean": after.mean - before.mean,

@@ -8,15 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
+from seacage.surrogates import _gp as gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting_list
-from seacage.surrogates._gp import (
-    FittedGaussianProcess,
-    check_options,
-    fit_process,
-    processes_from_arrays,
-    processes_to_arrays,
-    select_likelihood_outputs,
-)
 from seacage.surrogates._loads._case_kernel import MEAN, WAVE_EFFECT, case_inputs, case_variance
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
@@ -54,7 +47,7 @@ class LoadGP:
     symmetry: Symmetry | None = None
 
     def __post_init__(self) -> None:
-        check_options(restarts=self.restarts)
+        gp.check_options(restarts=self.restarts)
 
     def fit(
         self, x: Float[np.ndarray, "n feature"], loads: LoadCases, *, duration: float, seed: int = 0
@@ -107,14 +100,14 @@ def fit_tables(
     *,
     restarts: int,
     seed: int,
-) -> dict[str, FittedGaussianProcess]:
+) -> dict[str, gp.FittedGaussianProcess]:
     """Fit a process to each table of outputs at the images of cases; "mean" is one of means."""
     return {
-        name: fit_process(
+        name: gp.fit_process(
             MEAN if name == "mean" else WAVE_EFFECT,
             x,
             table,
-            likelihood_outputs=select_likelihood_outputs(table),
+            likelihood_outputs=gp.select_likelihood_outputs(table),
             restarts=restarts,
             seed=seed,
             most=MOST_POINTS,
@@ -124,7 +117,7 @@ def fit_tables(
 
 
 def _widening(
-    process: FittedGaussianProcess,
+    process: gp.FittedGaussianProcess,
     table: Float[np.ndarray, "row line"],
     case: Float[np.ndarray, " row"],
 ) -> Float[np.ndarray, " line"]:
@@ -220,7 +213,7 @@ class FittedLoadGP:
 
     MODEL: ClassVar[str] = "loads"
 
-    processes: Mapping[str, FittedGaussianProcess]
+    processes: Mapping[str, gp.FittedGaussianProcess]
     widening: Mapping[str, Float[np.ndarray, " line"]]
     offset: Mapping[str, float]
     scatter: Float[np.ndarray, " line"]
@@ -299,7 +292,7 @@ class FittedLoadGP:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs."""
-        settings, arrays = processes_to_arrays(list(self.processes.values()))
+        settings, arrays = gp.processes_to_arrays(list(self.processes.values()))
         own = {"model": self.MODEL, "statistics": list(self.processes), "processes": settings}
         return own, arrays | {
             "widening": np.stack(list(self.widening.values())),
@@ -317,7 +310,7 @@ class FittedLoadGP:
         finite.
         """
         names = setting_list(settings, "statistics", str)
-        processes = processes_from_arrays(settings, "processes", arrays, later=True)
+        processes = gp.processes_from_arrays(settings, "processes", arrays, later=True)
         lines = len(processes[0].centre)
         offset = array(arrays, "offset", len(names) - 1).tolist()
         widening = array(arrays, "widening", len(names), lines)

@@ -51,18 +51,9 @@ class FittedMotionGP:
     ) -> Self:
         """Learn from features and standard deviations.
 
-        Parameters
-        ----------
-        x
-            One row per case, from ``sea_features``; all with waves.
-        std
-            Of each node's place, east, north and up [m].
-        symmetry
-            Of the nodes: every case is learned with all its images.
-        restarts
-            Random starts of each hyperparameter search beside the deterministic one.
-        seed
-            Of the images that are drawn and of the random starts.
+        ``x``, ``restarts``, ``seed``: as for ``LoadGP``.
+        ``std``: of each node's place, east, north and up [m].
+        ``symmetry``: of the nodes: every case is learned with all its images.
         """
         # A turn of the sea leaves these two as they are, where it would mix east and north
         motion = {"across": np.hypot(std[..., 0], std[..., 1]), "up": std[..., 2]}

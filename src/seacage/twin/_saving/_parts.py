@@ -7,24 +7,10 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from seacage import surrogates
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.records import check_stream
-from seacage.surrogates import (
-    Domain,
-    Fitted,
-    FittedGaussianProcess,
-    FittedLoadGP,
-    FittedMotionGP,
-    FittedNARGP,
-    FittedShapeGP,
-    LoadChange,
-    LoadRatio,
-    Predicts,
-    Symmetry,
-    decode,
-    encode,
-)
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
@@ -52,7 +38,12 @@ _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
 _OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio")
 Kind = TypeVar(
-    "Kind", FittedGaussianProcess, FittedLoadGP, FittedMotionGP, FittedNARGP, FittedShapeGP
+    "Kind",
+    surrogates.FittedGaussianProcess,
+    surrogates.FittedLoadGP,
+    surrogates.FittedMotionGP,
+    surrogates.FittedNARGP,
+    surrogates.FittedShapeGP,
 )
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a domain."""
@@ -90,7 +81,9 @@ class Header:
     lines: tuple[tuple[str, str], ...] = ()
     line_domain: Box = ((), ())
     line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
-    depth_ratio: Mapping[str, LoadRatio] = field(default_factory=dict[str, LoadRatio])
+    depth_ratio: Mapping[str, surrogates.LoadRatio] = field(
+        default_factory=dict[str, surrogates.LoadRatio]
+    )
     parted: tuple[PartedHeader, ...] = ()
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
@@ -117,7 +110,7 @@ def to_parts(
         **others,
     )
     settings = TypeAdapter(Header).dump_python(header, mode="json", by_alias=True)
-    parts: dict[str, Fitted] = {"bridles": models.bridles, "shape": models.shape}
+    parts: dict[str, surrogates.Fitted] = {"bridles": models.bridles, "shape": models.shape}
     if models.loads is not None:
         parts["loads"] = models.loads.surrogate
     if models.loads is not None and models.loads.motion is not None:
@@ -129,7 +122,7 @@ def to_parts(
             for name in _CHANGES
         }
     parts |= {f"{UPPER}{name}": model.rest for name, model in models.upper.items()}
-    encoded = {name: encode(part) for name, part in parts.items()}
+    encoded = {name: surrogates.encode(part) for name, part in parts.items()}
     settings["models"] = {name: part for name, (part, _) in encoded.items()}
     arrays = {
         f"{name}:{key}": values
@@ -161,12 +154,12 @@ def _of_parted(kind: PartedKind) -> PartedHeader:
     return PartedHeader(domain=_box(kind.domain), **own)
 
 
-def _box(domain: Domain) -> Box:
+def _box(domain: surrogates.Domain) -> Box:
     return tuple(domain.lower.tolist()), tuple(domain.upper.tolist())
 
 
-def _domain(box: Box) -> Domain:
-    return Domain(lower=np.array(box[0]), upper=np.array(box[1]))
+def _domain(box: Box) -> surrogates.Domain:
+    return surrogates.Domain(lower=np.array(box[0]), upper=np.array(box[1]))
 
 
 def from_parts(
@@ -213,22 +206,22 @@ def _discrepancy(
     return Discrepancy(origin=Origin(settings["origin"]), **own)
 
 
-def _symmetry(arrays: Mapping[str, np.ndarray], *, lines: int) -> Symmetry | None:
+def _symmetry(arrays: Mapping[str, np.ndarray], *, lines: int) -> surrogates.Symmetry | None:
     start = f"{PARTED}:"
     own = {key.removeprefix(start): each for key, each in arrays.items() if key.startswith(start)}
-    return Symmetry.from_arrays(own, nodes=lines) if own else None
+    return surrogates.Symmetry.from_arrays(own, nodes=lines) if own else None
 
 
 def _models(
     header: Header, settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray]
 ) -> Models:
-    def part(name: str, kind: type[Kind], **given: Predicts) -> Kind:
+    def part(name: str, kind: type[Kind], **given: surrogates.Predicts) -> Kind:
         own = {
             key.removeprefix(f"{name}:"): values
             for key, values in arrays.items()
             if key.startswith(f"{name}:")
         }
-        model = decode(settings[name], own, **given)
+        model = surrogates.decode(settings[name], own, **given)
         if not isinstance(model, kind):
             raise ModelError(f"{name} is a {type(model).__name__}, not a {kind.__name__}.")
         return model
@@ -236,13 +229,13 @@ def _models(
     models = Models(
         cage=Cage.from_toml(header.cage_toml),
         domain=_domain(header.domain),
-        bridles=part("bridles", FittedGaussianProcess),
-        shape=part("shape", FittedShapeGP),
+        bridles=part("bridles", surrogates.FittedGaussianProcess),
+        shape=part("shape", surrogates.FittedShapeGP),
         loads=LineLoads(
             names=tuple(name for name, _ in header.lines),
             kinds=tuple(kind for _, kind in header.lines),
-            surrogate=part("loads", FittedLoadGP),
-            motion=part("motion", FittedMotionGP) if "motion" in settings else None,
+            surrogate=part("loads", surrogates.FittedLoadGP),
+            motion=part("motion", surrogates.FittedMotionGP) if "motion" in settings else None,
             domain=_domain(header.line_domain),
             waves=SiteWaves(table=np.array(header.line_waves), origin=header.line_waves_of)
             if header.line_waves
@@ -253,9 +246,11 @@ def _models(
         parted=PartedLines(
             kinds=tuple(
                 PartedKind(
-                    surrogate=LoadChange(
+                    surrogate=surrogates.LoadChange(
                         **{
-                            name: part(f"{PARTED}{one.line}/{name}", FittedGaussianProcess)
+                            name: part(
+                                f"{PARTED}{one.line}/{name}", surrogates.FittedGaussianProcess
+                            )
                             for name in _CHANGES
                         },
                     ),
@@ -271,7 +266,7 @@ def _models(
         **{name: getattr(header, name) for name in _OF_MODELS},
     )
     for sensor, gain in header.gains.items():
-        rest = part(f"{UPPER}{sensor}", FittedNARGP, lower=models.lower(sensor))
+        rest = part(f"{UPPER}{sensor}", surrogates.FittedNARGP, lower=models.lower(sensor))
         model = Correction(gain=gain, rest=rest, spread=header.spreads[sensor])
         models = models.with_level_2(sensor, model)
     return models
