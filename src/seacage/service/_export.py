@@ -31,6 +31,7 @@ BLOCK = 512  # rows that are answered and written at once; the shapes of more wo
 _SAME_IN_ALL_ROWS = {
     "bridle_names",
     "bridle_level",
+    "bridle_calibrated",
     "sensor_names",
     "sensor_units",
     "sensor_level",
@@ -111,6 +112,7 @@ class Output(NamedTuple):
     name: str
     unit: str
     level: int
+    calibrated: bool  # whether it has an interval
     in_domain: Bool[np.ndarray, " t"]
     low: Float[np.ndarray, " t"]
     mean: Float[np.ndarray, " t"]
@@ -122,27 +124,28 @@ def bridle_outputs(answer: Answer) -> list[Output]:
     """List what is answered about each bridle."""
     names, tension, interval = answer.bridle_names, answer.bridle_tension, answer.bridle_interval()
     tables = (answer.bridle_low, tension.mean, *interval)
-    about = zip(names, ["N"] * len(names), answer.bridle_level.tolist(), strict=True)
+    levels, calibrated = answer.bridle_level.tolist(), answer.bridle_calibrated.tolist()
+    about = zip(names, ["N"] * len(names), levels, calibrated, strict=True)
     return list(_outputs(about, answer.bridle_in_domain, tables))
 
 
 def sensor_outputs(answer: Answer) -> list[Output]:
     """List what is answered about each sensor."""
     tables = (answer.sensor_low.mean, answer.sensor.mean, *answer.sensor_interval())
-    levels = answer.sensor_level.tolist()
-    about = zip(answer.sensor_names, answer.sensor_units, levels, strict=True)
+    levels, calibrated = answer.sensor_level.tolist(), (answer.sensor_level > 1).tolist()
+    about = zip(answer.sensor_names, answer.sensor_units, levels, calibrated, strict=True)
     return list(_outputs(about, answer.sensor_in_domain, tables))
 
 
 def _outputs(
-    about: Iterable[tuple[str, str, int]],
+    about: Iterable[tuple[str, str, int, bool]],
     in_domain: Bool[np.ndarray, "t output"],
     tables: Sequence[Table],
 ) -> Iterator[Output]:
-    for k, (name, unit, level) in enumerate(about):
+    for k, (name, unit, level, calibrated) in enumerate(about):
         door, scale = _DOOR_UNITS[unit]
         columns = (scale * table[:, k] for table in tables)
-        yield Output(name, door, level, in_domain[:, k], *columns)
+        yield Output(name, door, level, calibrated, in_domain[:, k], *columns)
 
 
 # --- a table, and lines of JSON with the same columns ---
@@ -167,7 +170,7 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
         yield from _interval_columns(one.name, unit, one.mean, one.lower, one.upper)
     yield "shape_level", [answer.shape_level] * len(buoy)
     yield "shape_in_domain", answer.in_domain.tolist()
-    yield "shape_interval_reason", [interval_reason(answer.shape_level)] * len(buoy)
+    yield "shape_interval_reason", [interval_reason(known=answer.shape_level > 1)] * len(buoy)
     depth = -answer.node_position[:, replayed.cage.bottom_node, 2]
     yield from _interval_columns("shape_bottom_depth", "m", depth)
     yield "shape_largest_sigma_m", [None] * len(buoy)
@@ -281,7 +284,7 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
         },
         attrs=_attributes("Answers of a twin to a buoy's record", replayed.cage)
         | {"origin": replayed.origin, "shape_level": answer.shape_level}
-        | {"shape_interval_reason": interval_reason(answer.shape_level) or ""},
+        | {"shape_interval_reason": interval_reason(known=answer.shape_level > 1) or ""},
     )
 
 

@@ -35,8 +35,11 @@ class Answer:
         One sentence where a row is not valid or extrapolates, else "".
     bridle_names, bridle_tension, bridle_level
         Best mean and standard deviation of each bridle's tension [N], and the fidelity that
-        gave them: 2 where a shackle has a level-2 model, else 1. At level 1 the standard
-        deviation is the emulator's own, about the simulations.
+        gave them: 2 where a shackle has a level-2 model, else 1.
+    bridle_calibrated
+        Whether the standard deviation is about the true tension: at level 2, and at level 1 with
+        the discrepancy of the simulations that at least three other shackles show. Elsewhere it
+        is the emulator's own, about the simulations.
     bridle_low
         The simulations alone [N].
     sensor_names, sensor_units, sensor, sensor_level
@@ -85,6 +88,7 @@ class Answer:
     bridle_tension: Prediction
     bridle_low: Float[np.ndarray, "case line"]
     bridle_level: Int[np.ndarray, " line"]
+    bridle_calibrated: Bool[np.ndarray, " line"]
     sensor_names: tuple[str, ...]
     sensor_units: tuple[str, ...]
     sensor: Prediction
@@ -136,21 +140,21 @@ class Answer:
         return ends[0], ends[1]
 
     def bridle_interval(self) -> Interval:
-        """Interval of the tensions that holds 95 % [N]; NaN at level 1."""
-        return _interval(self.bridle_tension, self.bridle_level)
+        """Interval of the tensions that holds 95 % [N]; NaN where none is calibrated."""
+        return _interval(self.bridle_tension, self.bridle_calibrated)
 
     def sensor_interval(self) -> Interval:
         """Interval of the readings that holds 95 % [N] or [m]; NaN at level 1."""
-        return _interval(self.sensor, self.sensor_level)
+        return _interval(self.sensor, self.sensor_level > 1)
 
 
-def interval_reason(level: int) -> str | None:
-    """Why answers of a level have no interval; None where they have one."""
-    return None if level > 1 else NO_INTERVAL
+def interval_reason(*, known: bool) -> str | None:
+    """Why an answer has no interval; None where one is known."""
+    return None if known else NO_INTERVAL
 
 
-def _interval(prediction: Prediction, level: Int[np.ndarray, " output"]) -> Interval:
-    half = np.where(level > 1, INTERVAL_SD * prediction.std, np.nan)
+def _interval(prediction: Prediction, known: Bool[np.ndarray, " output"]) -> Interval:
+    half = np.where(known, INTERVAL_SD * prediction.std, np.nan)
     # A rope never pushes, and no sensor hangs above the surface.
     lower, upper = (np.maximum(prediction.mean + end, 0.0) for end in (-half, half))
     return lower, upper

@@ -20,6 +20,7 @@ from seacage.surrogates import (
     Predicts,
 )
 from seacage.twin._answer import Answer
+from seacage.twin._bridle_discrepancy import discrepancy_std, relative_discrepancy
 from seacage.twin._correction import Correction, Corrections
 from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
@@ -87,6 +88,12 @@ class Models:
         lines = enumerate((one.bridle for one in self.cage.shackles), start=first)
         return {column: line for column, line in lines if column in self.corrections}
 
+    @cached_property
+    def relative_discrepancy(self) -> float | None:
+        """Of the bridles' simulated loads, as their shackles show it [-]; None where too few do."""
+        shackles = [(line, self.corrections[column]) for column, line in self._lines.items()]
+        return relative_discrepancy(shackles, self.bridles)
+
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
         for one in self.cage.depth_sensors:
@@ -130,6 +137,7 @@ class Models:
             np.ones(count, dtype=int) for count in (cage.bridle_count, len(cage.sensor_names))
         )
         bridle_level[list(self._lines.values())] = 2
+        calibrated = (bridle_level > 1) | (self.relative_discrepancy is not None)
         sensor_level[list(self.corrections)] = 2
         return Answer(
             valid=valid,
@@ -138,6 +146,7 @@ class Models:
             ),
             bridle_names=cage.bridle_names,
             bridle_level=bridle_level,
+            bridle_calibrated=calibrated,
             sensor_names=cage.sensor_names,
             sensor_units=("m",) * (len(sensor_level) - shackles) + ("N",) * shackles,
             sensor_level=sensor_level,
@@ -263,6 +272,8 @@ class Models:
             std=np.hstack([shape.std[:, nodes, 2], bridle_low.std[:, lines]]),
         )
         bridle, sensor = deepcopy((bridle_low, sensor_low))
+        if self.relative_discrepancy is not None:
+            bridle.std[:] = discrepancy_std(bridle_low, self.relative_discrepancy)
         if self.together is not None:
             columns = list(self.corrections)
             low = Prediction(mean=sensor_low.mean[:, columns], std=sensor_low.std[:, columns])

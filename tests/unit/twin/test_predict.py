@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import Flag, InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
-from seacage.twin import Answered, Metocean, interval_reason, replay
+from seacage.twin import Answered, Metocean, replay
 
 
 def numbers(answer):
@@ -142,18 +142,6 @@ def test_no_interval_reaches_below_a_slack_rope_or_above_the_surface():
     for lower, upper in (answer.bridle_interval(), answer.sensor_interval()):
         assert np.nanmin(lower) == 0.0
         assert (upper >= lower)[np.isfinite(lower)].all()
-
-
-def test_a_bridle_that_no_shackle_trained_has_a_spread_and_no_interval():
-    answer = stand_in_twin().predict(stand_in_seas(5))
-    (lower, upper), alone = answer.bridle_interval(), answer.bridle_level == 1
-    assert alone.sum() == 7
-    for end in (lower, upper):
-        assert np.isnan(end[:, alone]).all()
-        assert np.isfinite(end[:, ~alone]).all()
-    assert np.isfinite(answer.bridle_tension.std).all()
-    assert "No sensor has trained level 2" in str(interval_reason(1))
-    assert interval_reason(2) is None
 
 
 def test_a_sensor_that_trained_nothing_has_no_interval():

@@ -51,12 +51,9 @@ export function otherRows(names, state, scale, colour) {
   });
 }
 
-/**
- * Interval of the load of a bridle; null where none is known, as where no shackle has trained
- * level 2: the error of the simulation alone at sea is not known.
- */
+/** Interval of the load of a bridle; null where none is known, as where too few shackles trained. */
 export const intervalOf = (bridle) =>
-  (bridle?.level > 1 && Number.isFinite(bridle.tension_kn.lower) ? bridle.tension_kn : null);
+  (Number.isFinite(bridle?.tension_kn.lower) ? bridle.tension_kn : null);
 
 /** The largest share that is to be seen. */
 export function largest(rows) {

@@ -29,8 +29,7 @@ export function quantities(topology) {
 }
 
 /**
- * Rows of one quantity: {t, lower, upper, low, mean} and {t, value} of what was measured. What
- * the simulation alone answers has no interval: how far it is off at sea is not known.
+ * Rows of one quantity: {t, lower, upper, low, mean} and {t, value} of what was measured.
  */
 export function rowsOf(columns, { key, name, sensor }) {
   const nothing = columns.t.map(() => null);
@@ -38,9 +37,8 @@ export function rowsOf(columns, { key, name, sensor }) {
   const series = key === "water:speed" ? alone(columns.speed)
     : key === "cage:volume" ? alone(columns.volume.map((share) => (share === null ? null : 100 * share)))
     : columns[key.startsWith("bridle:") ? "bridles" : "sensors"][name] ?? alone(nothing);
-  const interval = series.level > 1 ? {} : { lower: nothing, upper: nothing };
   const measured = columns.measured[sensor] ?? { t: [], value: [] };
-  return { t: columns.t, ...series, ...interval, measured };
+  return { t: columns.t, ...series, measured };
 }
 
 /**

@@ -50,7 +50,7 @@ function ofBridle(name, topology, state) {
   const kn = bridle.tension_kn;
   const load = knownLoad(bridle, state);
   const rows = [[text("tip.tension"), withUnit(kn.mean, "kN")],
-    [text("mark.interval"), interval(bridle, kn, 1, "kN")],
+    [text("mark.interval"), interval(kn, 1, "kN")],
     [text("tip.share"), load ? text("tip.shareOf", { share: fixed(100 * load.share, 0),
       capacity: withUnit(topology.bridle_capacity_kn[k], "kN", 0) }) : DASH]];
   const shackle = topology.shackles.find((one) => one.bridle === k);
@@ -73,7 +73,7 @@ function ofSensor(name, topology, state) {
   const rows = [
     [text("tip.measured"), reading(sensor, decimals)],
     [text("tip.predicted"), withUnit(sensor.mean, sensor.unit, decimals)],
-    [text("mark.interval"), interval(sensor, sensor, decimals, sensor.unit)],
+    [text("mark.interval"), interval(sensor, decimals, sensor.unit)],
     [text("tip.simulated"), withUnit(sensor.low_fidelity, sensor.unit, decimals)],
   ];
   const bridle = topology.shackles.find((one) => one.name === name)?.bridle;
@@ -88,11 +88,11 @@ function reading({ measured, measured_age_s: age, unit }, decimals) {
   return age === null ? value : text("tip.ago", { value, age: lasting(age) });
 }
 
-/** Interval in words; the error of the simulation alone at sea is not known. */
-function interval({ level: number }, bounds, decimals, unit) {
+/** Interval in words. */
+function interval(bounds, decimals, unit) {
   const { mean, lower, upper } = bounds;
   if (mean === null) return DASH;
-  if (number <= 1 || !known(lower)) return text("number.notKnown");
+  if (!known(lower)) return text("number.notKnown");
   return text("number.range", { lower: amount(lower, unit, decimals), upper: withUnit(upper, unit, decimals) });
 }
 

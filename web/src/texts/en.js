@@ -177,7 +177,7 @@ export default {
       measured: "Measured",
       share: "Of capacity",
     },
-    capacity: "Capacity {capacity} {unit} each; tensions in {unit}. Level 2 is trained by a shackle, level 1 is simulation alone.",
+    capacity: "Capacity {capacity} {unit} each; tensions in {unit}. Level 2 is trained by a shackle, level 1 is simulation alone, with an interval as wide as simulations are off at the shackles.",
     noInterval: "No interval is known here.",
     noIntervalWhy: "No interval at level 1: {reason}",
     noSpreadWhy: "No ±2σ of the net: {reason}",
@@ -540,7 +540,7 @@ export default {
       },
       level: {
         word: "Level",
-        means: "2 where a sensor on the cage has trained the twin, and its interval is for what the sensor reads. 1 where it is simulation alone, whose error at sea is not known: it has no interval.",
+        means: "2 where a sensor on the cage has trained the twin, and its interval is for what the sensor reads. 1 where it is simulation alone: its interval, wide, is from how far simulations are off where sensors are; with fewer than three shackles there is none.",
       },
       envelope: {
         word: "±2σ",

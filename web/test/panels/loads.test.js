@@ -58,7 +58,7 @@ test("a row says what twin, simulation and shackle say of a bridle", () => {
   const [one, two] = loadRows(topology, state);
   assert.deepEqual([one.mean, one.measured, one.rank], [0.5, null, "critical"]);
   assert.deepEqual([two.lower, two.upper, two.measured, two.measuredKn], [0.225, 0.275, 0.3, 60]);
-  assert.equal(largest([one, two]), 0.5);
+  assert.equal(largest([one, two]), 0.6);
 });
 
 test("the largest load expected in waves is on the rose and in its scale", () => {
@@ -76,9 +76,11 @@ test("the summary of all lines names the one that bears most, or why none is kno
   assert.match(heaviest([line("bridle-1", null)], { lines_reason: "Hs is not known." }), /Hs is not known/);
 });
 
-test("a bridle that no shackle has trained has no interval, for its error is not known", () => {
-  const [one] = loadRows(topology, state);
-  assert.deepEqual([one.interval, one.lower, one.upper], [null, null, null]);
+test("a bridle has the interval that the state gives, at level 1 too, and none where it has none", () => {
+  const bridles = state.bridles.map((one) => ({ ...one, tension_kn: { mean: 50, lower: null, upper: null } }));
+  const [known, none] = [state, { ...state, bridles }].map((one) => loadRows(topology, one)[0]);
+  assert.deepEqual([known.lower, known.upper], [0.4, 0.6]);
+  assert.deepEqual([none.interval, none.lower, none.upper], [null, null, null]);
 });
 
 test("without valid input a row has no number", () => {

@@ -83,9 +83,10 @@ test("the twin's rows and the readings share one set of times", () => {
   assert.deepEqual([lower[0], upper[0], low[0]], [3, 7, 6]);
 });
 
-test("what no sensor has trained is drawn without an interval", () => {
-  const columns = columnsOf(history());
-  columns.bridles["bridle-1"].level = 1;
+test("what has no interval is drawn without one", () => {
+  const nothing = { level: 1, lower: [null, null], upper: [null, null] };
+  const bridles = { "bridle-1": { ...series([10, 20]), ...nothing } };
+  const columns = columnsOf({ ...history(), bridles });
   const { lower, upper, mean } =
     rowsOf(columns, { key: "bridle:bridle-1", name: "bridle-1", sensor: null });
   assert.deepEqual([lower, upper, mean], [[null, null], [null, null], [10, 20]]);

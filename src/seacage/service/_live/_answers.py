@@ -17,16 +17,7 @@ from seacage.ocean import SeaState
 from seacage.records import Record, Sample
 from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._live._damage import LineDamage
-from seacage.service._schemas._cages import (
-    CageSummary,
-    LineLoad,
-    LinePlace,
-    PartedLine,
-    Position,
-    ShacklePlace,
-    Topology,
-    WhatIfParted,
-)
+from seacage.service._schemas import _cages as schemas
 from seacage.service._schemas._history import History, Measured, Series
 from seacage.service._schemas._samples import SampleOut
 from seacage.service._schemas._state import (
@@ -103,7 +94,7 @@ def loads_of(state: State) -> Iterator[tuple[float, str, str]]:
             yield share, one.name, f"measured by {by}"
 
 
-def summary_of(name: str, state: State) -> CageSummary:
+def summary_of(name: str, state: State) -> schemas.CageSummary:
     """Say in one line how a cage is."""
     waiting = [alarm for alarm in state.alarms if not alarm.shelved]
     worst = max(waiting, key=lambda alarm: (alarm.active, alarm.severity), default=None)
@@ -115,7 +106,7 @@ def summary_of(name: str, state: State) -> CageSummary:
         "worst_title": worst.title if worst else None,
     }
     water = dict(state.water or dict.fromkeys(Water.model_fields))
-    return CageSummary.model_validate({**dict(state), **water, **about})
+    return schemas.CageSummary.model_validate({**dict(state), **water, **about})
 
 
 def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[BridleState]:
@@ -132,7 +123,7 @@ def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[
                 lower=_number(lower[0, k] / 1e3),
                 upper=_number(upper[0, k] / 1e3),
             ),
-            interval_reason=interval_reason(int(answer.bridle_level[k])),
+            interval_reason=interval_reason(known=bool(answer.bridle_calibrated[k])),
             low_fidelity_kn=_number(answer.bridle_low[0, k] / 1e3),
             utilisation=_number(tension[k] / cage.bridle_capacity[k], 4),
             measured_kn=_number(read[k] / 1e3),
@@ -176,17 +167,17 @@ def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> lis
     ]
 
 
-def what_if_parted(name: str, twin: Twin, answered: Answered) -> WhatIfParted:
+def what_if_parted(name: str, twin: Twin, answered: Answered) -> schemas.WhatIfParted:
     """Say what would be left in the water of an answer if each line parted, the worst first."""
     water, reason = answered.metocean, answered.answer.reason[0]
-    lines = list[PartedLine]()
+    lines = list[schemas.PartedLine]()
     if twin.models.parted is None:
         reason = NO_PARTED_LINES
     elif water is not None and answered.answer.valid[0]:
         found = twin.if_parted(water)
         reason = found.reason[0]
         lines = _lines_if_parted(found) if np.isfinite(found.mean[0]).any() else []
-    return WhatIfParted(
+    return schemas.WhatIfParted(
         cage=name,
         time=answered.t,
         level=1,
@@ -195,10 +186,10 @@ def what_if_parted(name: str, twin: Twin, answered: Answered) -> WhatIfParted:
     )
 
 
-def _lines_if_parted(found: IfParted) -> list[PartedLine]:
+def _lines_if_parted(found: IfParted) -> list[schemas.PartedLine]:
     second = found.second_would_part[0]
     return [
-        PartedLine(
+        schemas.PartedLine(
             parted=parted,
             kind=found.kinds[row],
             in_domain=bool(found.in_domain[0, row]),
@@ -216,13 +207,15 @@ def _lines_if_parted(found: IfParted) -> list[PartedLine]:
     ]
 
 
-def _load_on(found: IfParted, load: Float[np.ndarray, " line"], line: int) -> LineLoad | None:
+def _load_on(
+    found: IfParted, load: Float[np.ndarray, " line"], line: int
+) -> schemas.LineLoad | None:
     if (kn := _number(load[line] / 1e3)) is None:
         return None
-    return LineLoad(line=found.line_names[line], kn=kn)
+    return schemas.LineLoad(line=found.line_names[line], kn=kn)
 
 
-def _badness(line: PartedLine) -> tuple[bool, float, float]:
+def _badness(line: schemas.PartedLine) -> tuple[bool, float, float]:
     load = line.largest_maximum_3h or line.largest_mean
     return bool(line.second_would_part), line.utilisation or 0.0, load.kn if load else 0.0
 
@@ -250,7 +243,7 @@ def _sensors(
                 upper=_number(one.upper[0]),
                 std=std,
                 std_level=None if std is None else depths[column],
-                interval_reason=interval_reason(one.level),
+                interval_reason=interval_reason(known=one.calibrated),
                 measured=_number(measured) if fresh else None,
                 measured_age_s=_number(age) if fresh else None,
             )
@@ -282,15 +275,15 @@ def _shape_state(answer: Answer) -> ShapeState:
     return ShapeState(
         level=answer.shape_level,
         in_domain=bool(answer.in_domain[0]),
-        interval_reason=interval_reason(answer.shape_level),
+        interval_reason=interval_reason(known=answer.shape_level > 1),
     )
 
 
-def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
+def topology_of(name: str, twin: Twin, *, speed: float) -> schemas.Topology:
     """Say what of a cage does not change."""
     cage = twin.cage
     rest = twin.predict(SeaState(current_speed=0.0, current_to=0.0))
-    topology = Topology(
+    topology = schemas.Topology(
         cage=name,
         origin=str(twin.origin),
         spokes=cage.spokes,
@@ -302,8 +295,10 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
         bridle_nodes=cage.bridle_nodes.tolist(),
         bridle_corners=cage.bridle_corner.tolist(),
         bridle_capacity_kn=(cage.bridle_capacity / 1e3).round(_DECIMALS).tolist(),
-        depth_sensors=[Position(name=one.name, node=one.node) for one in cage.depth_sensors],
-        shackles=[ShacklePlace(name=one.name, bridle=one.bridle) for one in cage.shackles],
+        depth_sensors=[
+            schemas.Position(name=one.name, node=one.node) for one in cage.depth_sensors
+        ],
+        shackles=[schemas.ShacklePlace(name=one.name, bridle=one.bridle) for one in cage.shackles],
         lines=_line_places(cage, rest.line_names),
         water_depth_m=cage.site.water_depth,
         stale_after_s=twin.timeouts.stale_after_s,
@@ -313,14 +308,14 @@ def topology_of(name: str, twin: Twin, *, speed: float) -> Topology:
     return topology.model_copy(update={"topology_id": digest[:_ID_DIGITS]})
 
 
-def _line_places(cage: Cage, known: tuple[str, ...]) -> list[LinePlace]:
+def _line_places(cage: Cage, known: tuple[str, ...]) -> list[schemas.LinePlace]:
     """Say where the lines besides the bridles run whose loads are known."""
     every = mooring_lines(cage, anchored=True)
     if set(known) <= set(cage.bridle_names) or not set(known) <= set(every.names):
         return []
     ends = line_ends(cage).round(_DECIMALS).tolist()
     return [
-        LinePlace(name=name, kind=kind, ends_m=its)
+        schemas.LinePlace(name=name, kind=kind, ends_m=its)
         for name, kind, its in zip(every.names, every.kinds, ends, strict=True)
         if name in known and name not in cage.bridle_names
     ]
@@ -358,7 +353,7 @@ def _series(one: Output) -> Series:
         mean=_column(one.mean),
         lower=_column(one.lower),
         upper=_column(one.upper),
-        interval_reason=interval_reason(one.level),
+        interval_reason=interval_reason(known=one.calibrated),
     )
 
 

@@ -20,8 +20,9 @@ class BridleState(AbstractAnswer):
     """A bridle's load now.
 
     ``level`` is the fidelity of the answer: 2 where it is trained with a shackle, else 1, and
-    ``in_domain`` is of that level. Level 1 has no interval, and ``interval_reason`` says why;
-    it is null where there is one. ``utilisation`` is the mean over the line's capacity.
+    ``in_domain`` is of that level. At level 1 the interval is from how far simulations are off
+    at the shackles; with fewer than three trained there is none, and ``interval_reason`` says why.
+    ``utilisation`` is the mean over the line's capacity.
     ``measured_kn`` is what its shackle measured, as the load's alarm takes it: the last minute's
     mean, else the newest in time.
     """

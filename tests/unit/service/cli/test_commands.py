@@ -293,15 +293,10 @@ def test_every_row_of_a_record_is_answered_or_says_why_not(buoy, twin, tmp_path)
         rows = list(csv.DictReader(file))
     computed = [name for name in rows[0] if name.endswith(("_kn", "_m")) or "fraction" in name]
     assert len(computed) > 8 * 6 + 12 * 6
-    bare = [f"bridle-{k}" for k in (1, 2, 3, 4, 5, 6, 12)] + ["shape_bottom_depth"]
     low = [name for name in rows[0] if "_low_lower_" in name or "_low_upper_" in name]
-    none = [
-        name
-        for name in rows[0]
-        if name.startswith(tuple(f"{one}_{end}" for one in bare for end in ("lower", "upper")))
-    ]
+    none = [f"shape_bottom_depth_{end}_m" for end in ("lower", "upper")]
     none += [*low, "shape_largest_sigma_m"]
-    assert len(none) == 2 * 8 + 2 * 20 + 1
+    assert len(none) == 2 + 2 * 20 + 1
     for row in rows:
         good = row["valid"] == "True"
         assert all((row[name] != "") is good for name in computed if name not in none)
@@ -348,7 +343,7 @@ def test_the_netcdf_file_holds_the_whole_shape_and_nothing_where_there_is_no_inp
         assert kept.sizes["node"] == stand_in_twin().cage.node_count
         assert kept.valid.values.tolist() == [1, 0, 1, 1]
         trained = kept.bridle_level.values == 2
-        assert np.isfinite(kept.bridle_tension_lower.values[0]).tolist() == trained.tolist()
+        assert np.isfinite(kept.bridle_tension_lower.values[0]).all()
         for name in ("shackle_tension_low_upper", "node_sigma"):
             assert np.isnan(kept[name].values).all(), name
         assert kept.bridle_in_domain.values.tolist() == [

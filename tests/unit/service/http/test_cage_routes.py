@@ -104,13 +104,8 @@ def test_a_buoy_reading_becomes_loads_with_levels_and_intervals_where_they_are_h
     for bridle in state["bridles"]:
         tension = bridle["tension_kn"]
         assert bridle["in_domain"]
-        if bridle["level"] == 1:
-            assert tension["mean"] > 0.0
-            assert tension["lower"] is tension["upper"] is None
-            assert "No sensor has trained level 2" in bridle["interval_reason"]
-        else:
-            assert 0.0 <= tension["lower"] <= tension["mean"] <= tension["upper"]
-            assert bridle["interval_reason"] is None
+        assert 0.0 <= tension["lower"] <= tension["mean"] <= tension["upper"]
+        assert bridle["interval_reason"] is None
         assert bridle["utilisation"] == pytest.approx(tension["mean"] / 160.0, abs=1e-4)
     sensor = state["sensors"][1]
     assert (sensor["name"], sensor["unit"], sensor["measured"]) == ("depth-2", "m", 14.0)
@@ -124,8 +119,10 @@ def test_the_history_has_intervals_only_where_a_sensor_trained_them(live: Runnin
     live.post(buoy(-6), buoy(-18, speed=0.3))
     eventually(live.state, lambda one: one["valid"])
     history = live.reader.get("/api/v1/cages/ace/history").json()
-    for series in (*history["bridles"].values(), *history["sensors"].values()):
-        known = series["level"] == 2
+    for known, series in (
+        *((True, one) for one in history["bridles"].values()),
+        *((one["level"] == 2, one) for one in history["sensors"].values()),
+    ):
         assert (series["interval_reason"] is None) == known
         assert series["in_domain"] == [True, True]
         for end in (*series["lower"], *series["upper"]):
