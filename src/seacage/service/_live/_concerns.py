@@ -8,6 +8,9 @@ from seacage.service._live._answers import loads_of, usable_value
 from seacage.service._schemas._state import Concern, State
 from seacage.twin import ADAPTATION_BLOCK, AlarmPolicy, TwinState
 
+# Factor on a sensor's interval from which on the twin no longer fits its cage (decision 75) [-]
+WIDEST = 2.0
+
 
 def concerns_of(
     state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float
@@ -23,6 +26,14 @@ def concerns_of(
         words = f"The net holds {_percent(state.volume_fraction)} of its volume in still water"
         yield _beyond("volume", "Volume low", words, least_volume)
     names = {one.name for one in state.sensors}
+    factor = {name: one.factor for name, one in memory.tracked.items() if name in names}
+    if wide := sorted(name for name in factor.keys() - memory.silent if factor[name] >= WIDEST):
+        words = (
+            f"Readings of {', '.join(wide)} miss the twin's intervals so often that these are "
+            f"widened {max(factor[name] for name in wide):.1f} times: the cage, or a sensor, has "
+            "changed since training. Train the twin anew."
+        )
+        yield Concern(kind="fit", title="Twin no longer fits", message=words)
     measured = {name for name in names if _is_measured(memory, state, name, policy)}
     if not measured:
         words = "No sensor has given a valid reading within its timeout: all is predicted."

@@ -138,7 +138,7 @@ class AlarmBrief(AbstractAnswer):
 class Concern(AbstractAnswer):
     """Why a cage is not called well, though no alarm may be active: what, and by which limit."""
 
-    kind: Literal["load", "volume", "measured"]
+    kind: Literal["load", "volume", "fit", "measured"]
     title: str
     message: str
 

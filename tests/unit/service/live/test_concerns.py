@@ -1,16 +1,19 @@
 from dataclasses import replace
 from datetime import timedelta
 
+import numpy as np
 import pytest
 
 from running_service import NOON
 from seacage.conventions import Flag
+from seacage.ocean import SeaState
 from seacage.records import Sample
 from seacage.service._live._answers import state_of, summary_of
 from seacage.service._live._concerns import concerns_of
 from seacage.service._schemas._state import AlarmBrief
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy, Answered
+from seacage.twin._interval_factors import Tracked
 
 SEA = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
 
@@ -102,3 +105,50 @@ def test_a_sensor_that_sends_nothing_valid_within_its_timeout_is_named_though_it
 def test_one_bad_reading_after_a_good_one_is_no_concern():
     bad = replace(depth(5, -40.0), flags={"depth_m": Flag.FAIL}, remarks=())
     assert seen(depth(0, 14.2), bad, minutes=6)[1] == {}
+
+
+def fitting(factors: dict[str, float], *, silent: frozenset[str] = frozenset()):
+    """Concerns of a healthy cage whose sensors' intervals are widened by factors."""
+    state, _ = seen(depth(0, 14.2))
+    twin = stand_in_twin()
+    memory = twin.start()
+    for sample in (Sample(stream="buoy-1", t=NOON, values=SEA), depth(0, 14.2)):
+        memory, _ = twin.step(memory, sample, NOON)
+    tracked = {name: Tracked(factor=factor) for name, factor in factors.items()}
+    memory = replace(memory, tracked=tracked, silent=silent)
+    policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
+    found = concerns_of(state, memory, policy=policy, least_volume=0.0)
+    return {one.kind: one for one in found}
+
+
+def test_sensors_whose_intervals_are_twice_as_wide_as_trained_are_a_concern():
+    concern = fitting({"depth-1": 2.3, "depth-2": 1.99, "shackle-4": 2.0})["fit"]
+    assert concern.title == "Twin no longer fits"
+    assert concern.message.startswith("Readings of depth-1, shackle-4 miss the twin's intervals")
+    assert "widened 2.3 times" in concern.message
+    assert concern.message.endswith("Train the twin anew.")
+
+
+def test_a_sensor_that_is_silent_or_of_another_cage_says_nothing_of_the_fit():
+    assert "fit" not in fitting({"depth-1": 2.3}, silent=frozenset({"depth-1"}))
+    assert "fit" not in fitting({"depth-9": 3.0})
+
+
+@pytest.mark.parametrize(("rises", "fits"), [(0.0, True), (1.5, False)])
+def test_a_net_that_hangs_higher_than_in_training_no_longer_fits_within_a_day(rises, fits):
+    """A depth sensor reads a metre and a half less than predicted, every ten minutes."""
+    twin = stand_in_twin()
+    memory, random = twin.start(), np.random.default_rng(3)
+    for minutes in range(0, 1440, 10):
+        sea = SeaState(current_speed=0.4 + 0.1 * np.cos(minutes / 120.0), current_to=90.0)
+        metres = twin.predict(sea).sensor.mean[0, 1] - rises + 0.03 * random.standard_normal()
+        water = {**SEA, "current_speed_m_s": sea.current_speed}
+        buoy = Sample(stream="buoy-1", t=at(minutes), values=water)
+        for sample in (buoy, depth(minutes, metres)):
+            memory, _ = twin.step(memory, sample, sample.t)
+    memory, events = twin.step(memory, None, at(1440))
+    answered = next(event for event in reversed(events) if isinstance(event, Answered))
+    policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
+    state = state_of("ace", twin, answered, memory)
+    found = [one.kind for one in concerns_of(state, memory, policy=policy, least_volume=0.0)]
+    assert ("fit" not in found) == fits
