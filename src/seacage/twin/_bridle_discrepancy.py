@@ -6,36 +6,35 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from seacage.surrogates import FittedGaussianProcess, Prediction
+from seacage.surrogates import Prediction, Predicts
 from seacage.twin._correction import Correction
 
 PerLine = Float[np.ndarray, "case line"]
 
 LEAST_SHACKLES = 3  # with a calibrated level 2: of fewer, how much they differ is not known
 ROWS = 100  # of each shackle's training inputs, at most
+LEAST_SCALE = 0.1  # least scale of a load over the mean of its line's [-]
 
 # Of what a line's error is measured in, the share that is the mean load of all bridles and not its
 # own: where one hangs slack in the simulation, another bears the more [-]
 SHARED = 0.3
-# Root mean square over the development truths of the family (decision 74), which counts as so many
-# shackles
+# Root mean square over the development truths (decision 74), which counts as so many shackles
 EXPECTED, EXPECTED_WEIGHT = 0.95, 2.0
 # Standard deviation over the root mean square, so that 1.96 of it hold 95 % of those cages' loads
 CALIBRATION = 1.06
 
 
 def relative_discrepancy(
-    corrections: Sequence[tuple[int, Correction]], bridles: FittedGaussianProcess
+    corrections: Sequence[tuple[int, Correction]], bridles: Predicts
 ) -> float | None:
     """Root mean square of level 2 less level 1, over the scale of the loads [-].
 
-    A cage's lines are longer, tighter and more heavily loaded than drawn, each in its own way.
-    How large such errors are is alike for all lines of a cage and differs between cages.
+    A cage's lines are longer, tighter and more heavily loaded than drawn, each in its own way. How
+    large such errors are is alike for all lines of a cage, and differs between cages. None where
+    fewer than ``LEAST_SHACKLES`` have a calibrated level 2.
 
     ``corrections``: level 2 of each shackle, with the number of its bridle.
     ``bridles``: level 1 of all bridles.
-
-    Returns None where fewer than ``LEAST_SHACKLES`` have a calibrated level 2.
     """
     known = [one for one in corrections if one[1].spread.by != "none"]
     if len(known) < LEAST_SHACKLES:
@@ -50,15 +49,17 @@ def discrepancy_std(low: Prediction, relative: float) -> PerLine:
     return np.hypot(low.std, CALIBRATION * relative * _scale(low.mean))
 
 
-def _mean_square(line: int, model: Correction, bridles: FittedGaussianProcess) -> float:
+def _mean_square(line: int, model: Correction, bridles: Predicts) -> float:
     """Of one shackle, over the water that trained it."""
     x = model.rest.upper[-1].cases()[:, :-1]
     x = x[:: -(-len(x) // ROWS)]
     low = bridles.predict(x)
     own = Prediction(mean=low.mean[:, line], std=low.std[:, line])
     latent = model.latent(x, own)
-    square = (latent.mean - own.mean) ** 2 + latent.std**2
-    return float(np.mean(square / _scale(low.mean)[:, line] ** 2))
+    scale = _scale(low.mean)[:, line]
+    # Where all lines hang slack in the simulation, a newton is not many times nothing.
+    scale = np.maximum(scale, max(LEAST_SCALE * float(np.mean(scale)), 1.0))
+    return float(np.mean(((latent.mean - own.mean) ** 2 + latent.std**2) / scale**2))
 
 
 def _scale(low: PerLine) -> PerLine:

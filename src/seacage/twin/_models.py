@@ -137,7 +137,6 @@ class Models:
             np.ones(count, dtype=int) for count in (cage.bridle_count, len(cage.sensor_names))
         )
         bridle_level[list(self._lines.values())] = 2
-        calibrated = (bridle_level > 1) | (self.relative_discrepancy is not None)
         sensor_level[list(self.corrections)] = 2
         return Answer(
             valid=valid,
@@ -146,7 +145,7 @@ class Models:
             ),
             bridle_names=cage.bridle_names,
             bridle_level=bridle_level,
-            bridle_calibrated=calibrated,
+            bridle_calibrated=(bridle_level > 1) | (self.relative_discrepancy is not None),
             sensor_names=cage.sensor_names,
             sensor_units=("m",) * (len(sensor_level) - shackles) + ("N",) * shackles,
             sensor_level=sensor_level,

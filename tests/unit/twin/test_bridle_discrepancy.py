@@ -8,7 +8,7 @@ import pytest
 from seacage.surrogates import Prediction
 from seacage.testing import stand_in_campaign, stand_in_seas, stand_in_twin
 from seacage.twin import Metocean, Twin, interval_reason
-from seacage.twin._bridle_discrepancy import SHARED, discrepancy_std
+from seacage.twin._bridle_discrepancy import SHARED, discrepancy_std, relative_discrepancy
 
 SEAS = stand_in_seas(40, seed=5, current_speed=0.5)
 
@@ -69,6 +69,22 @@ def test_the_wider_simulations_are_off_at_the_shackles_the_wider_is_the_interval
     assert off is not None
     assert before is not None
     assert off > 2.0 * before > 0.0
+
+
+class Still:
+    """Level 1 of lines that bear nothing in half of the water."""
+
+    def predict(self, x: np.ndarray, /) -> Prediction:
+        load = np.where(x[:, :1] > np.median(x[:, 0]), 2e4 * x[:, :1], 0.0)
+        return Prediction(mean=np.tile(load, (1, 12)), std=np.ones((len(x), 12)))
+
+
+def test_lines_that_all_hang_slack_in_the_simulation_do_not_blow_the_intervals_up():
+    models = stand_in_twin().models
+    shackles = [(one.bridle, models.upper[one.name]) for one in models.cage.shackles]
+    found = relative_discrepancy(shackles, Still())
+    assert found is not None
+    assert found < 10.0
 
 
 def test_a_slack_line_may_bear_a_share_of_what_the_others_do():
