@@ -14,7 +14,7 @@ from seacage.service._http._dependencies import (
     may_read,
     refusal,
 )
-from seacage.service._rov._clearance import clearance_answer, inspection_answer, inspection_of
+from seacage.service._rov._clearance import clearance_answer, inspection_answer
 from seacage.service._rov._files import (
     GEOJSON,
     MCAP,
@@ -23,12 +23,7 @@ from seacage.service._rov._files import (
     net_geojson,
     net_mcap,
 )
-from seacage.service._schemas._clearance import (
-    ClearanceAnswer,
-    ClearanceQuery,
-    InspectionAnswer,
-    InspectionQuery,
-)
+from seacage.service._schemas import _clearance as schemas
 from seacage.twin import PredictedNet
 
 rov = APIRouter(prefix="/api/v1/cages", tags=["rov"], dependencies=may_read)
@@ -44,14 +39,14 @@ _MAP = {
     "features": [{"type": "Feature", "geometry": _LINE, "properties": {}}],
 }
 _NO_MCAP = refusal(501, "MCAP cannot be written here.", "Install seacage[ros].")
-
-
 _MCAP = _NO_MCAP | body_of(MCAP, "The file.", schema=BINARY)
 _GEOJSON = body_of(GEOJSON, "The file.", schema={"type": "object"}, example=_MAP)
 
 
 @rov.post("/{cage}/clearance", responses=WRITE | _STALE)
-def ask_clearance(live: Live, body: ClearanceQuery, at: At = None) -> ClearanceAnswer:
+def ask_clearance(
+    live: Live, body: schemas.ClearanceQuery, at: At = None
+) -> schemas.ClearanceAnswer:
     """Say how far points, or a path, are from the net, and how surely.
 
     Distances are to the net as the shape's call gives it, two triangles to a panel. The
@@ -63,25 +58,25 @@ def ask_clearance(live: Live, body: ClearanceQuery, at: At = None) -> ClearanceA
 
 
 @rov.post("/{cage}/inspection", responses=WRITE | _STALE)
-def ask_inspection(live: Live, body: InspectionQuery, at: At = None) -> InspectionAnswer:
+def ask_inspection(
+    live: Live, body: schemas.InspectionQuery, at: At = None
+) -> schemas.InspectionAnswer:
     """Lay a way along the net at a stand-off, facing it, from the top to the tip."""
     return inspection_answer(_net_for(live, body, at), body)
 
 
 @rov.post("/{cage}/inspection.mcap", response_class=Response, responses=WRITE | _STALE | _MCAP)
-def ask_inspection_mcap(live: Live, body: InspectionQuery, at: At = None) -> Response:
+def ask_inspection_mcap(live: Live, body: schemas.InspectionQuery, at: At = None) -> Response:
     """Give the same way as a nav_msgs/Path in an MCAP file, with the net it follows."""
-    net = _net_for(live, body, at)
-    return Response(inspection_mcap(net, inspection_of(net, body)), media_type=MCAP)
+    return Response(inspection_mcap(_net_for(live, body, at), body), media_type=MCAP)
 
 
 @rov.post(
     "/{cage}/inspection.geojson", response_class=Response, responses=WRITE | _STALE | _GEOJSON
 )
-def ask_inspection_geojson(live: Live, body: InspectionQuery, at: At = None) -> Response:
+def ask_inspection_geojson(live: Live, body: schemas.InspectionQuery, at: At = None) -> Response:
     """Give the same way as lines by latitude and longitude."""
-    net = _net_for(live, body, at)
-    return Response(inspection_geojson(net, inspection_of(net, body)), media_type=GEOJSON)
+    return Response(inspection_geojson(_net_for(live, body, at), body), media_type=GEOJSON)
 
 
 @rov.get("/{cage}/shape.mcap", response_class=Response, responses=READ | _STALE | _MCAP)
@@ -96,7 +91,9 @@ def get_shape_geojson(live: Live, at: At = None, *, allow_stale: Stale = False) 
     return Response(net_geojson(_net(live, at, allow_stale=allow_stale)), media_type=GEOJSON)
 
 
-def _net_for(live: Live, body: ClearanceQuery | InspectionQuery, at: At) -> PredictedNet:
+def _net_for(
+    live: Live, body: schemas.ClearanceQuery | schemas.InspectionQuery, at: At
+) -> PredictedNet:
     return _net(live, at, allow_stale=body.allow_stale, most_age_s=body.max_age_s)
 
 

@@ -1,10 +1,11 @@
 """From a predicted net to the answers that pilots get, by HTTP or in a shell, in their frames."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from jaxtyping import Float
+from pydantic import BaseModel
 
 from seacage.cage import Cage
 from seacage.service._schemas import _clearance as schemas
@@ -13,6 +14,7 @@ from seacage.twin import Clearance, InspectionPath, PredictedNet, inspection_pat
 _STATED = 1.0  # the distance that every answer is about [m]
 _DECIMALS = 4  # of metres and probabilities: a tenth of a millimetre
 Points = Float[np.ndarray, "point 3"]
+Model = TypeVar("Model", bound=BaseModel)
 
 
 def clearance_answer(net: PredictedNet, query: schemas.ClearanceQuery) -> schemas.ClearanceAnswer:
@@ -46,7 +48,7 @@ def inspection_answer(
 ) -> schemas.InspectionAnswer:
     """Say where to swim along a net, and where to look."""
     way = inspection_of(net, query)
-    columns = zip(
+    columns = (
         _round(in_frame(query.frame, way.position)),
         places_of(net.cage, query.frame, way.position),
         way.heading.round(2).tolist(),
@@ -57,12 +59,10 @@ def inspection_answer(
         _round(way.clearance.expected),
         _none_where_unknown(net, way.clearance.sigma),
         _none_where_unknown(net, way.clearance.p_below),
-        strict=True,
     )
-    names = list(schemas.Waypoint.model_fields)
     return schemas.InspectionAnswer(
         **_about(net, query.frame, query.below_m),
-        waypoints=[schemas.Waypoint(**dict(zip(names, row, strict=True))) for row in columns],
+        waypoints=_entries(schemas.Waypoint, *columns),
         parts=int(way.part[-1]) + 1,
         left_out=way.left_out,
     )
@@ -71,7 +71,8 @@ def inspection_answer(
 def _points(
     net: PredictedNet, frame: schemas.FrameName, stated: Clearance, other: Clearance
 ) -> list[schemas.PointClearance]:
-    columns = zip(
+    return _entries(
+        schemas.PointClearance,
         _round(stated.distance),
         stated.inside.tolist(),
         _round(in_frame(frame, stated.position)),
@@ -82,14 +83,14 @@ def _points(
         _none_where_unknown(net, stated.p_below),
         _none_where_unknown(net, other.p_below),
         _none_where_unknown(net, stated.p_through),
-        strict=True,
+        [round(net.age_s, 3)] * len(stated.distance),
     )
-    names = [name for name in schemas.PointClearance.model_fields if name != "state_age_s"]
-    age_s = round(net.age_s, 3)
-    return [
-        schemas.PointClearance(state_age_s=age_s, **dict(zip(names, row, strict=True)))
-        for row in columns
-    ]
+
+
+def _entries(kind: type[Model], *columns: Sequence[Any]) -> list[Model]:
+    """One entry for each row; the columns are in the order of the entry's fields."""
+    rows = zip(*columns, strict=True)
+    return [kind(**dict(zip(kind.model_fields, row, strict=True))) for row in rows]
 
 
 def _path(net: PredictedNet, query: schemas.ClearanceQuery, point: Points) -> schemas.PathAnswer:
@@ -158,11 +159,6 @@ def places_of(
     if frame != "wgs84":
         return [None] * len(position)
     # A tenth of a microdegree is a centimetre.
-    columns = [
-        one.round(decimals).tolist()
-        for one, decimals in zip(cage.plane.geographic(position), (8, 8, 3), strict=True)
-    ]
-    return [
-        schemas.Place(latitude_deg=latitude, longitude_deg=longitude, depth_m=depth)
-        for latitude, longitude, depth in zip(*columns, strict=True)
-    ]
+    latitude, longitude, depth = cage.plane.geographic(position)
+    columns = (latitude.round(8), longitude.round(8), depth.round(3))
+    return _entries(schemas.Place, *(one.tolist() for one in columns))

@@ -9,7 +9,7 @@ from typing import Any
 
 from seacage.conventions import InputError, SeacageError
 from seacage.service._publish._post import POST_FAILED, AbstractCaller
-from seacage.service._rov._clearance import clearance_answer, inspection_answer, inspection_of
+from seacage.service._rov._clearance import clearance_answer, inspection_answer
 from seacage.service._rov._files import inspection_geojson, inspection_mcap
 from seacage.service._schemas._clearance import ClearanceQuery, InspectionQuery
 from seacage.twin import PredictedNet, StaleError
@@ -24,8 +24,8 @@ Query = ClearanceQuery | InspectionQuery
 _CALLS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
     "clearance": lambda net, query: clearance_answer(net, query).model_dump_json().encode(),
     "inspection": lambda net, query: inspection_answer(net, query).model_dump_json().encode(),
-    "inspection.mcap": lambda net, query: inspection_mcap(net, inspection_of(net, query)),
-    "inspection.geojson": lambda net, query: inspection_geojson(net, inspection_of(net, query)),
+    "inspection.mcap": inspection_mcap,
+    "inspection.geojson": inspection_geojson,
 }
 
 

@@ -6,8 +6,10 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
+from seacage.service._rov._clearance import inspection_of
 from seacage.service._rov._ros_messages import RosMessages
-from seacage.twin import InspectionPath, PredictedNet
+from seacage.service._schemas._clearance import InspectionQuery
+from seacage.twin import PredictedNet
 
 MCAP = "application/octet-stream"
 GEOJSON = "application/geo+json"
@@ -35,9 +37,9 @@ def net_mcap(net: PredictedNet) -> bytes:
     )
 
 
-def inspection_mcap(net: PredictedNet, way: InspectionPath) -> bytes:
+def inspection_mcap(net: PredictedNet, query: InspectionQuery) -> bytes:
     """Write a way along the net, each pose facing it, and the net besides."""
-    ros = RosMessages(net.t)
+    way, ros = inspection_of(net, query), RosMessages(net.t)
     return ros.write(
         {
             "/seacage/net/mesh": ros.mesh(net.expected_position, _triangles(net.cage.panels)),
@@ -68,8 +70,9 @@ def net_geojson(net: PredictedNet) -> bytes:
     )
 
 
-def inspection_geojson(net: PredictedNet, way: InspectionPath) -> bytes:
+def inspection_geojson(net: PredictedNet, query: InspectionQuery) -> bytes:
     """Write a way along the net as one line for each of its parts."""
+    way = inspection_of(net, query)
     place = _geographic(net, way.position)
     features: list[dict[str, Any]] = []
     for part in range(int(way.part[-1]) + 1):

@@ -8,15 +8,10 @@ from pathlib import Path
 from pydantic import BaseModel, ValidationError
 
 from seacage.conventions import TABLE_BYTES, InputError, read_text
-from seacage.service._schemas._clearance import (
-    ClearanceAnswer,
-    ClearanceQuery,
-    FrameName,
-    InspectionAnswer,
-)
+from seacage.service._schemas import _clearance as schemas
 
 # Columns of each frame; others beside them are left alone
-HEADS: dict[FrameName, tuple[str, str, str]] = {
+HEADS: dict[schemas.FrameName, tuple[str, str, str]] = {
     "enu": ("east_m", "north_m", "up_m"),
     "ned": ("north_m", "east_m", "down_m"),
     "wgs84": ("latitude_deg", "longitude_deg", "depth_m"),
@@ -25,7 +20,7 @@ HEADS: dict[FrameName, tuple[str, str, str]] = {
 Row = tuple[float, float, float]
 
 
-def read_points(path: Path) -> tuple[FrameName, list[Row]]:
+def read_points(path: Path) -> tuple[schemas.FrameName, list[Row]]:
     """Read points from a CSV file, whose header says in which frame they are.
 
     Raises InputError: no such header, or a cell that is no number, with its line.
@@ -46,7 +41,9 @@ def read_points(path: Path) -> tuple[FrameName, list[Row]]:
     return frame, rows
 
 
-def query_of(frame: FrameName, rows: Sequence[Row], **options: object) -> ClearanceQuery:
+def query_of(
+    frame: schemas.FrameName, rows: Sequence[Row], **options: object
+) -> schemas.ClearanceQuery:
     """Ask about points of a frame, with the other fields of the query as options.
 
     Raises InputError: more points than one request takes, or coordinates that are none.
@@ -57,28 +54,28 @@ def query_of(frame: FrameName, rows: Sequence[Row], **options: object) -> Cleara
     ]
     points = {"places": geographic} if frame == "wgs84" else {"points_m": [[*row] for row in rows]}
     try:
-        return ClearanceQuery.model_validate({"frame": frame, **options, **points})
+        return schemas.ClearanceQuery.model_validate({"frame": frame, **options, **points})
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(map(str, first["loc"]))
         raise InputError(f"clearance: {where}: {first['msg']}.") from error
 
 
-def write_clearances(path: Path, rows: Sequence[Row], answer: ClearanceAnswer) -> None:
+def write_clearances(path: Path, rows: Sequence[Row], answer: schemas.ClearanceAnswer) -> None:
     """Write points with their clearances, one line each."""
     _write(
         path, answer.frame, rows, answer.points, left_out={"nearest_m", "nearest_place", "normal"}
     )
 
 
-def write_waypoints(path: Path, answer: InspectionAnswer) -> None:
+def write_waypoints(path: Path, answer: schemas.InspectionAnswer) -> None:
     """Write a way along the net, one waypoint a line."""
     ways = answer.waypoints
     places = [dict(one.place).values() if one.place else one.position_m for one in ways]
     _write(path, answer.frame, places, ways, left_out={"position_m", "place"})
 
 
-def _frame_of(head: set[str], path: Path) -> FrameName:
+def _frame_of(head: set[str], path: Path) -> schemas.FrameName:
     for frame, keys in HEADS.items():
         if head.issuperset(keys):
             return frame
@@ -88,7 +85,7 @@ def _frame_of(head: set[str], path: Path) -> FrameName:
 
 def _write(
     path: Path,
-    frame: FrameName,
+    frame: schemas.FrameName,
     places: Sequence[Iterable[float]],
     entries: Sequence[BaseModel],
     *,

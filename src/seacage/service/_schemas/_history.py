@@ -32,18 +32,6 @@ class Measured(AbstractAnswer):
     width_s: int | None = None
 
 
-_SERIES = {
-    "unit": "kN",
-    "level": 2,
-    "in_domain": [True],
-    "low_fidelity": [38.7],
-    "mean": [41.2],
-    "lower": [36.9],
-    "upper": [45.5],
-    "interval_reason": None,
-}
-
-
 class History(AbstractAnswer):
     """The answers to the buoy's readings, one per reading, and what the sensors read.
 

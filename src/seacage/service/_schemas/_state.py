@@ -143,9 +143,6 @@ class Concern(AbstractAnswer):
     message: str
 
 
-_INTERVAL = {"mean": 41.2, "lower": 36.9, "upper": 45.5}
-
-
 class State(AbstractAnswer):
     """A cage at one time.
 

@@ -11,12 +11,7 @@ from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
 if TYPE_CHECKING:
     from seacage.service._rov._table import Row
-    from seacage.service._schemas._clearance import (
-        ClearanceAnswer,
-        FrameName,
-        PathAnswer,
-        PointClearance,
-    )
+    from seacage.service._schemas import _clearance as schemas
 
 
 @guard
@@ -76,7 +71,7 @@ def clearance(
         )
 
 
-def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]":
+def _points(path: Path | None, given: list[str]) -> "tuple[schemas.FrameName, list[Row]]":
     from seacage.service._rov._table import read_points
 
     if (path is None) == (not given):
@@ -95,7 +90,7 @@ def _points(path: Path | None, given: list[str]) -> "tuple[FrameName, list[Row]]
     return "enu", rows
 
 
-def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[str, str]]:
+def _clearance_rows(answer: "schemas.ClearanceAnswer", out: Path | None) -> list[tuple[str, str]]:
     rows = [
         (f"Point {number}", _point_row(one, answer.below_m))
         for number, one in enumerate(answer.points[:20], start=1)
@@ -107,7 +102,7 @@ def _clearance_rows(answer: "ClearanceAnswer", out: Path | None) -> list[tuple[s
     return rows + about_rows(answer, out)
 
 
-def _point_row(point: "PointClearance", below_m: float) -> str:
+def _point_row(point: "schemas.PointClearance", below_m: float) -> str:
     text = f"{point.distance_m:.2f} m {'inside' if point.inside else 'outside'}"
     if point.p_below is None:
         return text
@@ -117,7 +112,7 @@ def _point_row(point: "PointClearance", below_m: float) -> str:
     )
 
 
-def _path_row(path: "PathAnswer", below_m: float) -> str:
+def _path_row(path: "schemas.PathAnswer", below_m: float) -> str:
     text = (
         f"{path.length_m:.1f} m; closest {path.closest.distance_m:.2f} m after {path.along_m:.1f} m"
     )
