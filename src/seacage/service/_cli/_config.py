@@ -58,16 +58,13 @@ def show(*, config: Config = None) -> None:
 
 
 def _flat(prefix: str, value: object) -> Iterator[tuple[str, object]]:
-    parts: list[tuple[str, object]] | None = None
-    if isinstance(value, dict):
-        parts = list(cast("dict[str, object]", value).items())
-    elif isinstance(value, list) and value and isinstance(value[0], dict):
-        parts = [(str(index), item) for index, item in enumerate(cast("list[object]", value))]
-    if parts is None:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        value = dict(enumerate(cast("list[object]", value)))
+    if not isinstance(value, dict):
         yield prefix, _hidden(prefix, cast("object", value))
         return
-    for key, item in parts:
-        yield from _flat(f"{prefix}.{key}" if prefix else key, item)
+    for key, item in cast("dict[object, object]", value).items():
+        yield from _flat(f"{prefix}.{key}" if prefix else str(key), item)
 
 
 def _hidden(name: str, value: object) -> object:

@@ -252,12 +252,7 @@ class Finding:
 
 
 def report_findings(command: str, findings: Sequence[Finding], *, code: Exit) -> None:
-    """Print what was found, and end with a code where something is wrong.
-
-    ``command``: whose findings they are.
-    ``findings``: all of them, in the order in which they are read.
-    ``code``: to end with where one is wrong.
-    """
+    """Print what a command found, and end with a code where something is wrong."""
     wrong = [one for one in findings if one.state == "wrong"]
     report(
         {"ok": not wrong}

@@ -5,9 +5,8 @@ import platform
 import shutil
 import socket
 import sys
-from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -22,6 +21,7 @@ _EXTRAS = {
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
 }
+Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 
 
 @guard
@@ -42,27 +42,28 @@ def doctor(
         store: postgresql://user@host/name, or a file. [default: that in --data]
         port: The service's port.
     """
-    checks: tuple[Callable[[], Finding], ...] = (
-        _python,
-        _physics,
-        _store,
-        lambda: _rows(store or str(data / "samples.sqlite")),
-        lambda: _disk(data),
-        lambda: _tokens(data),
-        lambda: _port(port),
-        lambda: _demonstration(data),
-    )
-    findings = [check() for check in checks] + [_extra(name) for name in _EXTRAS]
+    found = {
+        "Python": _python(),
+        "Physics kernel": _physics(),
+        "Store": _store(),
+        "Stored rows": _rows(store or str(data / "samples.sqlite")),
+        "Disk": _disk(data),
+        "Tokens": _tokens(data),
+        f"Port {port}": _port(port),
+        "Demonstration": _demonstration(data),
+        **{f"Extra {name}": _extra(name) for name in _EXTRAS},
+    }
+    findings = [Finding(what=what, state=one[0], message=one[1]) for what, one in found.items()]
     report_findings("doctor", findings, code=Exit.FAILED)
 
 
-def _python() -> Finding:
+def _python() -> Found:
     fine = sys.version_info >= (3, 11)
     message = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
-    return Finding(what="Python", state="ok" if fine else "wrong", message=message)
+    return "ok" if fine else "wrong", message
 
 
-def _physics() -> Finding:
+def _physics() -> Found:
     """Settle a small cage: the kernel loads, runs and converges."""
     from seacage.cage import Cage
     from seacage.conventions import SeacageError
@@ -73,77 +74,69 @@ def _physics() -> Finding:
     try:
         response = settle(cage, SeaState(current_speed=0.5, current_to=0.0))
     except (SeacageError, OSError) as error:
-        return Finding(
-            what="Physics kernel", state="wrong", message=f"{error} Install seacage anew."
-        )
+        return "wrong", f"{error} Install seacage anew."
     fine = int(response.result) == 0
-    message = f"a small cage settles to {float(response.residual):.2g} N"
-    return Finding(what="Physics kernel", state="ok" if fine else "wrong", message=message)
+    return "ok" if fine else "wrong", f"a small cage settles to {float(response.residual):.2g} N"
 
 
-def _store() -> Finding:
+def _store() -> Found:
     import sqlite3
 
     fine = sqlite3.sqlite_version_info >= (3, 37)
     message = f"SQLite {sqlite3.sqlite_version}" + ("" if fine else "; 3.37 or later is needed")
-    return Finding(what="Store", state="ok" if fine else "wrong", message=message)
+    return "ok" if fine else "wrong", message
 
 
-def _rows(place: str) -> Finding:
+def _rows(place: str) -> Found:
     """Verify the stored rows, as many as can be in some seconds."""
     from seacage.service._store._integrity._verify import verify_for
     from seacage.service._store._store import StoreError, look_into
 
     if "://" not in place and not Path(place).exists():
-        return Finding(what="Stored rows", state="absent", message=f"no store in {place}")
+        return "absent", f"no store in {place}"
     try:
         with look_into(place) as session:
             message, wrong = verify_for(session, seconds=_LOOK_S), session.damage.message
             if session.checksums is not None:
                 message += f"; data_checksums of the server are {session.checksums}"
     except StoreError as error:
-        return Finding(what="Stored rows", state="wrong", message=str(error))
-    return Finding(what="Stored rows", state="wrong" if wrong else "ok", message=wrong or message)
+        return "wrong", str(error)
+    return "wrong" if wrong else "ok", wrong or message
 
 
-def _disk(data: Path) -> Finding:
+def _disk(data: Path) -> Found:
     place = next(one for one in (data, *data.resolve().parents) if one.exists())
     free = shutil.disk_usage(place).free / 1e9
     message = f"{free:.0f} GB free for {data}" + ("; free some" if free < 1.0 else "")
-    return Finding(what="Disk", state="wrong" if free < 1.0 else "ok", message=message)
+    return "wrong" if free < 1.0 else "ok", message
 
 
-def _tokens(data: Path) -> Finding:
+def _tokens(data: Path) -> Found:
     from seacage.service._auth._token_store import Tokens
 
     tokens = Tokens(data)
     count = len(tokens.all())
-    message = tokens.damage or f"{count} in {data}"
-    return Finding(what="Tokens", state="wrong" if tokens.damage else "ok", message=message)
+    return "wrong" if tokens.damage else "ok", tokens.damage or f"{count} in {data}"
 
 
-def _port(port: int) -> Finding:
+def _port(port: int) -> Found:
     with socket.socket() as probe:
         taken = probe.connect_ex(("127.0.0.1", port)) == 0
-    message = (
-        "something listens there: a service, or choose another with --port" if taken else "free"
-    )
-    return Finding(what=f"Port {port}", state="ok", message=message)
+    there = "something listens there: a service, or choose another with --port"
+    return "ok", there if taken else "free"
 
 
-def _demonstration(data: Path) -> Finding:
+def _demonstration(data: Path) -> Found:
     there = (data / "demonstration").is_dir()
     message = f"in {data}" if there else f"none in {data}; `seacage serve --demo` makes one"
-    return Finding(what="Demonstration", state="ok" if there else "absent", message=message)
+    return "ok" if there else "absent", message
 
 
-def _extra(name: str) -> Finding:
+def _extra(name: str) -> Found:
     missing = [one for one in _EXTRAS[name] if importlib.util.find_spec(one) is None]
     if missing:
-        message = f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
-        return Finding(what=f"Extra {name}", state="absent", message=message)
-    message = ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
-    return Finding(what=f"Extra {name}", state="ok", message=message)
+        return "absent", f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
+    return "ok", ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
 
 
 def _version(package: str) -> str:

@@ -16,37 +16,32 @@ if TYPE_CHECKING:
 Values = Float[np.ndarray, " law"]
 
 
-def answer_of_response(
-    cage: "Cage | Structure", response: "Response", laws: Sequence[str]
-) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """JSON and table of equilibria, one for each law."""
+def report_responses(
+    cage: "Cage | Structure", response: "Response", laws: Sequence[str], about: Mapping[str, object]
+) -> None:
+    """Print the bands of equilibria, one for each law."""
     bands = _Bands(laws)
     tensions = zip(response.line_names, response.line_tension.T / 1e3, strict=True)
-    depth = -response.node_position[:, :, 2]
-    answer: dict[str, Any] = {
-        "result": _by_law(laws, response.result),
+    answer = {
         "net_load_kn": bands.of("Load on the net", _size(response.net_force) / 1e3, "kN"),
         "volume_fraction": bands.of("Volume kept", response.volume_fraction, ""),
         "lines": {name: {"tension_kn": bands.of(name, each, "kN")} for name, each in tensions},
-        "depth_m": {
-            one.name: bands.of(one.name, depth[:, one.node], "m") for one in cage.depth_sensors
-        },
+        "depth_m": bands.of_depths(cage, response.node_position),
     }
-    return answer, bands.rows
+    _report("settle", cage, response.result, about, answer, bands)
 
 
-def answer_of_history(
-    cage: "Cage | Structure", history: "History", laws: Sequence[str]
-) -> tuple[dict[str, Any], list[tuple[str, str]]]:
-    """JSON and table of histories in the same waves, one for each law."""
+def report_histories(
+    cage: "Cage | Structure", history: "History", laws: Sequence[str], about: Mapping[str, object]
+) -> None:
+    """Print the bands of histories in the same waves, one for each law."""
     bands, lines = _Bands(laws), history.lines
     columns = {
         "mean_kn": ("mean", lines.tension.mean),
         "maximum_kn": ("largest", lines.tension.maximum),
         "mpm_3h_kn": ("3 h MPM", lines.extremes.mpm),
     }
-    answer: dict[str, Any] = {
-        "result": _by_law(laws, history.result),
+    answer = {
         "net_load_kn": bands.of("Mean load on the net", _size(history.net_force.mean) / 1e3, "kN"),
         "volume_fraction": bands.of("Volume kept", history.volume_fraction, ""),
         "lines": {
@@ -56,30 +51,28 @@ def answer_of_history(
             }
             for line, name in enumerate(lines.names)
         },
-        "depth_m": {
-            one.name: bands.of(one.name, -history.node.mean[:, one.node, 2], "m")
-            for one in cage.depth_sensors
-        },
+        "depth_m": bands.of_depths(cage, history.node.mean),
     }
-    return answer, bands.rows
+    _report("simulate", cage, history.result, about, answer, bands)
 
 
-def report_band(
+def _report(
     command: str,
     cage: "Cage | Structure",
-    laws: Sequence[str],
     results: np.ndarray,
     about: Mapping[str, object],
-    band: tuple[dict[str, Any], list[tuple[str, str]]],
+    answer: Mapping[str, object],
+    bands: "_Bands",
 ) -> None:
-    """Print a band, and fail where a law has no sound answer."""
+    """Print the bands, and fail where a law has no sound answer."""
     from seacage.conventions import RESULTS, Result, has_answer
 
-    answer, rows = band
-    report({"cage": cage.name, "origin": "computed", **about, **answer}, rows=rows)
+    by_law = dict(zip(bands.laws, map(int, results), strict=True))
+    about = {"cage": cage.name, "origin": "computed", **about, "result": by_law}
+    report({**about, **answer}, rows=bands.rows)
     wrong = [
         f"{law}: {RESULTS[Result(code)]}"
-        for law, code in zip(laws, map(int, results), strict=True)
+        for law, code in by_law.items()
         if not has_answer(np.array(code))
     ]
     if wrong:
@@ -90,7 +83,7 @@ class _Bands:
     """Collects the rows of a table while the bands of its quantities are made."""
 
     def __init__(self, laws: Sequence[str]) -> None:
-        self._laws = laws
+        self.laws = laws
         self.rows = [("", " lowest central highest")]
 
     def of(self, name: str, values: Values, unit: str) -> Mapping[str, Any]:
@@ -102,7 +95,16 @@ class _Bands:
             row = "".join(f"{value:8.{digits}f}" for value in band)
             self.rows.append((name, f"{row} {unit}".rstrip()))
         named = zip(("lowest", "central", "highest"), map(_number, band), strict=True)
-        return {**dict(named), "by_law": dict(zip(self._laws, map(_number, values), strict=True))}
+        return {**dict(named), "by_law": dict(zip(self.laws, map(_number, values), strict=True))}
+
+    def of_depths(
+        self, cage: "Cage | Structure", position: Float[np.ndarray, "law node 3"]
+    ) -> Mapping[str, Mapping[str, Any]]:
+        """The bands of the depths of a cage's sensors."""
+        return {
+            one.name: self.of(one.name, -position[:, one.node, 2], "m")
+            for one in cage.depth_sensors
+        }
 
 
 def _number(value: float) -> float | None:
@@ -111,7 +113,3 @@ def _number(value: float) -> float | None:
 
 def _size(force: Float[np.ndarray, "law 3"]) -> Values:
     return np.linalg.norm(force, axis=1)
-
-
-def _by_law(laws: Sequence[str], results: np.ndarray) -> dict[str, int]:
-    return dict(zip(laws, map(int, results), strict=True))

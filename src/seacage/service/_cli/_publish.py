@@ -130,16 +130,11 @@ def _batches(
     speed: float | None,
 ) -> "Iterator[Batch]":
     from seacage.records import ColumnMap, read_map
-    from seacage.service._publish._sources import (
-        arriving,
-        line_batches,
-        record_batches,
-        tail_batches,
-    )
+    from seacage.service._publish import _sources
     from seacage.service._tail import Tail, TailPosition
 
     if source == "-":
-        return line_batches(arriving(sys.stdin.fileno()), refuse=refused)
+        return _sources.line_batches(_sources.arriving(sys.stdin.fileno()), refuse=refused)
     path = Path(source)
     if not path.exists() and not follow:
         raise refusal(f"{path}: there is no such record. Name a file, a folder, or - for stdin.")
@@ -151,9 +146,9 @@ def _batches(
             raise refusal("publish: only tables can be followed, and this map is of NetCDF.")
         at = TailPosition() if place is None else TailPosition.parse(place)
         tail = Tail(path=path, columns=choice, stream=stream, refuse=refused, place=at)
-        return tail_batches(tail, source=name)
+        return _sources.tail_batches(tail, source=name)
     records = read_streams(path, columns=choice, stream=stream)
-    return record_batches(records, source=name, place=place, speed=speed)
+    return _sources.record_batches(records, source=name, place=place, speed=speed)
 
 
 def _transport(to: str, cage: str, site: str, token: str, ca: Path | None) -> "Transport":

@@ -60,10 +60,9 @@ def settle(
     about: dict[str, object] = {"mooring": mooring, "warnings": warnings, **net.changes}
     about |= {"without": parted} if parted else {}
     if net.laws is not None:
-        from seacage.service._cli._law_band import answer_of_response, report_band
+        from seacage.service._cli._law_band import report_responses
 
-        band = answer_of_response(subject, response, laws)
-        report_band("settle", subject, laws, response.result, about, band)
+        report_responses(subject, response, laws, about)
         return
     answer = _answer(subject, response) | about
     if out is not None:

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from seacage.service._cli import _options
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report_case
+from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, refusal, report_case
 
 if TYPE_CHECKING:
     import numpy as np
@@ -56,20 +56,19 @@ def simulate(
         animation: Write the first minute as a GIF.
     """
     from seacage.cage import Cage
-    from seacage.conventions import InputError
     from seacage.dynamics import MOVING_LAWS
     from seacage.dynamics import simulate as simulated
     from seacage.ocean import sample_waves
 
     net.check_files(out, animation)
     if net.laws is not None and mooring_draws:
-        raise InputError(
+        raise refusal(
             "simulate: --laws all and --mooring-draws are two bands. Ask for one at a time."
         )
     for path, ending in ((out, ".nc"), (animation, ".gif")):
         _check_file(path, ending)
     if animation is not None and sample_every > _SMOOTH:
-        raise InputError(
+        raise refusal(
             f"simulate: a sample every {sample_every:g} s is too seldom for an animation. "
             f"Give --sample-every {_SMOOTH:g} or less."
         )
@@ -116,11 +115,9 @@ def simulate(
         "pieces": pieces,
     } | ({"without": " ".join(without)} if without else {})
     if net.laws is not None:
-        from seacage.service._cli._law_band import answer_of_history, report_band
+        from seacage.service._cli._law_band import report_histories
 
-        band = answer_of_history(subject, history, laws)
-        about = {"warnings": warnings, **settings}
-        report_band("simulate", subject, laws, history.result, about, band)
+        report_histories(subject, history, laws, {"warnings": warnings, **settings})
         return
     answer = _answer(subject, history, warnings, settings)
     bands = _bands(others)
@@ -152,14 +149,12 @@ def _remarks(history: "History") -> list[str]:
 
 def _check_file(path: Path | None, ending: str) -> None:
     """Refuse a file that could not be written before an hour is simulated for it."""
-    from seacage.conventions import InputError
-
     if path is None:
         return
     if path.suffix != ending:
-        raise InputError(f"{path}: this file ends in {ending}. Name it {path.stem}{ending}.")
+        raise refusal(f"{path}: this file ends in {ending}. Name it {path.stem}{ending}.")
     if not path.absolute().parent.is_dir():
-        raise InputError(f"{path}: there is no folder {path.parent}. Make it first.")
+        raise refusal(f"{path}: there is no folder {path.parent}. Make it first.")
 
 
 def _refuse_failure(history: "History") -> None:
