@@ -226,19 +226,14 @@ def _stores_without(
 
 
 def _report_stores(reached: "dict[Path, CampaignStatus]") -> None:
-    report(
-        {
-            "stores": [
-                {"store": str(store), "parted": store.name, "answers": one.answers}
-                | {"done": one.done, "total": one.total, "finished": one.finished}
-                for store, one in reached.items()
-            ]
-        },
-        rows=[
-            (store.name, f"{one.done} of {one.total} done, {one.answers} to learn from")
-            for store, one in reached.items()
-        ],
-    )
+    stores, rows = list[dict[str, Any]](), list[tuple[str, str]]()
+    for store, one in reached.items():
+        stores.append(
+            {"store": str(store), "parted": store.name, "answers": one.answers}
+            | {"done": one.done, "total": one.total, "finished": one.finished}
+        )
+        rows.append((store.name, f"{one.done} of {one.total} done, {one.answers} to learn from"))
+    report({"stores": stores}, rows=rows)
 
 
 def _report_status(store: Path, reached: "CampaignStatus") -> None:

@@ -95,22 +95,20 @@ def virtual(
             "waves": None if calm else _waves(waves, buoy, parameters, seed=seed),
             "timetable": Timetable.over(buoy, one_in=one_in),
         }
+    elif waves is not None or calm or one_in > 1 or share is not None:
+        raise refusal(
+            "--waves, --calm, --one-in and --share are for --method simulate. Leave them out."
+        )
     else:
         options |= {"method": method, "kept": out / "responses"}
-        _check_settled(waves=waves, calm=calm, one_in=one_in, share=share)
     options |= {"events": _events(event, events)}
     with progress_bar() as progress:
+        subject, options["progress"] = _options.read_cage(cage), progress
         if share is not None:
-            virtual_field_share(
-                _options.read_cage(cage),
-                buoy,
-                share=_options.read_share(share),
-                progress=progress,
-                **options,
-            )
+            virtual_field_share(subject, buoy, share=_options.read_share(share), **options)
             report({"share": share}, rows=[("Simulated", f"share {share}")])
             return
-        made = virtual_field(_options.read_cage(cage), buoy, progress=progress, **options)
+        made = virtual_field(subject, buoy, **options)
     made.write(out)
     _report_field(made.record, out)
 
@@ -158,25 +156,14 @@ def _events(words: list[str] | None, path: Path | None) -> "list[Event]":
     return sorted([*listed, *map(Event.parse, words or ())], key=lambda event: event.at)
 
 
-def _check_settled(*, waves: Path | None, calm: bool, one_in: int, share: str | None) -> None:
-    if waves is not None or calm or one_in > 1 or share is not None:
-        raise refusal(
-            "--waves, --calm, --one-in and --share are for --method simulate. Leave them out."
-        )
-
-
 def _report_field(record: "FieldRecord", out: Path) -> None:
-    streams = [record.buoy, *record.sensors.values()]
+    counts = {one.stream: len(one) for one in (record.buoy, *record.sensors.values())}
     report(
-        {
-            "written": str(out),
-            "origin": str(record.origin),
-            "streams": {one.stream: len(one) for one in streams},
-            "notes": record.notes,
-        },
+        {"written": str(out), "origin": str(record.origin)}
+        | {"streams": counts, "notes": record.notes},
         rows=[
             ("Written", f"{out} ({record.origin})"),
-            *((one.stream, f"{len(one)} readings") for one in streams),
+            *((stream, f"{count} readings") for stream, count in counts.items()),
             *(("note", note) for note in record.notes),
         ],
     )
@@ -316,25 +303,17 @@ def check(
 
 def _report_flags(records: "list[Record]", written: Path | None = None) -> None:
     rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
+    streams: dict[str, object] = {}
     for record in records:
+        flags = _flags(record)
         rows.append((record.stream, _span(record)))
-        rows += [(f"  {key}", _flag_counts(flags)) for key, flags in _flags(record).items()]
+        for key, counts in flags.items():
+            counted = ", ".join(f"{count} {word}" for word, count in counts.items())
+            rows.append((f"  {key}", counted))
         rows += [("  note", note) for note in record.notes]
-    report(
-        {
-            "written": None if written is None else str(written),
-            "streams": {
-                one.stream: {
-                    "origin": str(one.origin),
-                    "rows": len(one),
-                    "flags": _flags(one),
-                    "notes": one.notes,
-                }
-                for one in records
-            },
-        },
-        rows=rows,
-    )
+        about = {"origin": str(record.origin), "rows": len(record)}
+        streams[record.stream] = about | {"flags": flags, "notes": record.notes}
+    report({"written": None if written is None else str(written), "streams": streams}, rows=rows)
 
 
 def _span(record: "Record") -> str:
@@ -353,7 +332,3 @@ def _flags(record: "Record") -> dict[str, dict[str, int]]:
         }
         for key in record.values
     }
-
-
-def _flag_counts(flags: dict[str, int]) -> str:
-    return ", ".join(f"{count} {word}" for word, count in flags.items())

@@ -95,8 +95,7 @@ def publish(
             progress=progress,
         ).run(batches)
     _report_outcome(done, refused)
-    if refused.count or done.rejected or done.quarantined:
-        count = refused.count + done.rejected + done.quarantined
+    if count := refused.count + done.rejected + done.quarantined:
         raise exit_with(f"{count} samples were refused; see the summary.", Exit.REFUSED)
     if done.ahead:
         raise exit_with(

@@ -251,12 +251,12 @@ def _band_rows(bands: dict[str, dict[str, dict[str, float]]]) -> list[tuple[str,
     def shown(band: dict[str, float]) -> str:
         return f"{band['mean']:7.2f} ({band['p05']:.2f} to {band['p95']:.2f})"
 
-    rows = (
-        [("Moorings drawn", "mean and 5 to 95 % over them, of mean and of most")] if bands else []
-    )
-    for name, band in bands.items():
-        rows.append((name, f"{shown(band['mean_kn'])} and {shown(band['maximum_kn'])} kN"))
-    return rows
+    rows = [
+        (name, f"{shown(band['mean_kn'])} and {shown(band['maximum_kn'])} kN")
+        for name, band in bands.items()
+    ]
+    heading = ("Moorings drawn", "mean and 5 to 95 % over them, of mean and of most")
+    return [heading, *rows] if rows else []
 
 
 def _statistics(

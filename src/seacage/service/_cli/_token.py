@@ -52,15 +52,12 @@ def show(*, data: DataFolder = Path("var")) -> None:
     from seacage.service._auth._token_store import Tokens
 
     grants = Tokens(data).all()
-    report(
-        {
-            "tokens": [
-                {"id": one.id, "name": one.name, "scope": list(one.scopes), "made": one.made}
-                for one in grants
-            ]
-        },
-        rows=[(one.id, f"{one.who}: {','.join(one.scopes)} {one.made}") for one in grants],
-    )
+    tokens = [
+        {"id": one.id, "name": one.name, "scope": list(one.scopes), "made": one.made}
+        for one in grants
+    ]
+    rows = [(one.id, f"{one.who}: {','.join(one.scopes)} {one.made}") for one in grants]
+    report({"tokens": tokens}, rows=rows)
 
 
 @group.command()

@@ -100,9 +100,11 @@ async def post_samples(request: Request, body: schemas.SamplesIn, live: Live) ->
     for ahead in (body.samples[one.index] for one in rejected if one.retry):
         live.refuse_ahead(ahead.stream, schemas.time_of(ahead))
     new = await live.take(samples)
-    receipt = schemas.Receipt(accepted=sum(new), duplicates=len(new) - sum(new), rejected=rejected)
-    _count_samples(request, live.name, receipt)
-    return receipt
+    accepted, duplicates = sum(new), len(new) - sum(new)
+    outcomes = {"accepted": accepted, "duplicate": duplicates, "rejected": len(rejected)}
+    for outcome, count in outcomes.items():
+        request.app.state.service.metrics.samples.labels(live.name, outcome).inc(count)
+    return schemas.Receipt(accepted=accepted, duplicates=duplicates, rejected=rejected)
 
 
 @cages.get(
@@ -198,10 +200,3 @@ def _history_text(history: History) -> Iterator[str]:
     for count, name in enumerate(History.model_fields):
         yield "{,"[count > 0] + history.model_dump_json(include={name})[1:-1]
     yield "}"
-
-
-def _count_samples(request: Request, cage: str, receipt: schemas.Receipt) -> None:
-    samples = request.app.state.service.metrics.samples
-    samples.labels(cage, "accepted").inc(receipt.accepted)
-    samples.labels(cage, "duplicate").inc(receipt.duplicates)
-    samples.labels(cage, "rejected").inc(len(receipt.rejected))

@@ -1,7 +1,6 @@
 """Questions of a pilot, answered here or by a running service."""
 
 import json
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from http import HTTPStatus
@@ -20,6 +19,7 @@ class AskError(SeacageError):
 
 
 Query = ClearanceQuery | InspectionQuery
+Ask = Callable[[str, Query], bytes]  # answers a call about one net as a service does: the body
 
 _CALLS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
     "clearance": lambda net, query: clearance_answer(net, query).model_dump_json().encode(),
@@ -29,26 +29,13 @@ _CALLS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
 }
 
 
-class AbstractAsker(ABC):
-    """Answers about one net, here or elsewhere."""
-
-    @abstractmethod
-    def ask(self, call: str, query: Query) -> bytes:
-        """Answer a call as a service does: the body."""
-
-
-@dataclass(frozen=True, slots=True)
-class LocalAsker(AbstractAsker):
-    """Answers from a predicted net."""
-
-    net: PredictedNet
-
-    def ask(self, call: str, query: Query) -> bytes:
-        return _CALLS[call](self.net, query)
+def ask_net(net: PredictedNet, call: str, query: Query) -> bytes:
+    """Answer a call from a predicted net."""
+    return _CALLS[call](net, query)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ServiceAsker(AbstractCaller, AbstractAsker):
+class ServiceAsker(AbstractCaller):
     """Answers of a service about one of its cages; the token has the scope read."""
 
     def ask(self, call: str, query: Query) -> bytes:

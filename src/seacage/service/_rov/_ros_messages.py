@@ -44,7 +44,7 @@ class RosMessages:
 
     def cloud(self, position: Points, sigma: Float[np.ndarray, " point"]) -> Any:
         """Nodes with their sigma."""
-        names, values = ("x", "y", "z", "sigma"), np.column_stack([position, sigma])
+        values = np.column_stack([position, sigma])
         packed = np.ascontiguousarray(values, dtype="<f4").view(np.uint8).ravel()
         return self._message(
             "sensor_msgs/msg/PointCloud2",
@@ -59,7 +59,7 @@ class RosMessages:
                     datatype=_POINT_FLOAT,
                     count=1,
                 )
-                for number, name in enumerate(names)
+                for number, name in enumerate(("x", "y", "z", "sigma"))
             ],
             is_bigendian=False,
             point_step=16,
@@ -71,7 +71,6 @@ class RosMessages:
     def mesh(self, position: Points, triangles: Int[np.ndarray, "triangle 3"]) -> Any:
         """Triangles, counter-clockwise seen from outside the net."""
         corners = position[triangles].reshape(-1, 3)
-        colour = self._message("std_msgs/msg/ColorRGBA", **_COLOUR)
         return self._message(
             "visualization_msgs/msg/Marker",
             header=self._header(),
@@ -79,7 +78,7 @@ class RosMessages:
             type=TRIANGLE_LIST,
             pose=self._pose(np.zeros(3), np.array([1.0, 0.0, 0.0])),
             scale=self._message("geometry_msgs/msg/Vector3", x=1.0, y=1.0, z=1.0),
-            color=colour,
+            color=self._message("std_msgs/msg/ColorRGBA", **_COLOUR),
             points=[self._point(one) for one in corners],
         )
 

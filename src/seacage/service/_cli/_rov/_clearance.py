@@ -51,7 +51,7 @@ def clearance(
     query = query_of(
         frame, rows, as_path=path, below_m=below, allow_stale=net.allow_stale, max_age_s=net.max_age
     )
-    answer = ClearanceAnswer.model_validate_json(net.asker().ask("clearance", query))
+    answer = ClearanceAnswer.model_validate_json(net.asker()("clearance", query))
     if out is not None:
         write_clearances(out, rows, answer)
     known = [one.p_below for one in answer.points if one.p_below is not None]

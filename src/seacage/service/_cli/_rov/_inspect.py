@@ -10,7 +10,7 @@ from seacage.service._cli._options import OutFile
 from seacage.service._cli._rov._options import Below, NetOptions, about_rows
 
 if TYPE_CHECKING:
-    from seacage.service._rov._client import AbstractAsker
+    from seacage.service._rov._client import Ask
     from seacage.service._schemas._clearance import InspectionAnswer, InspectionQuery
 
 
@@ -61,23 +61,21 @@ def inspect_path(
         allow_stale=net.allow_stale,
         max_age_s=net.max_age,
     )
-    asker = net.asker()
-    answer = InspectionAnswer.model_validate_json(asker.ask("inspection", query))
+    ask = net.asker()
+    answer = InspectionAnswer.model_validate_json(ask("inspection", query))
     if out is not None:
-        _write_way(out, query, answer, asker)
+        _write_way(out, query, answer, ask)
     report(answer.model_dump(mode="json"), rows=_inspection_rows(answer, out))
 
 
-def _write_way(
-    out: Path, query: "InspectionQuery", answer: "InspectionAnswer", asker: "AbstractAsker"
-) -> None:
+def _write_way(out: Path, query: "InspectionQuery", answer: "InspectionAnswer", ask: "Ask") -> None:
     from seacage.service._rov._table import write_waypoints
 
     form = out.suffix.lower()
     if form == ".csv":
         write_waypoints(out, answer)
     elif form in {".mcap", ".geojson"}:
-        out.write_bytes(asker.ask(f"inspection{form}", query))
+        out.write_bytes(ask(f"inspection{form}", query))
     else:
         raise refusal(f"{out}: a way is written as .csv, .mcap or .geojson.")
 

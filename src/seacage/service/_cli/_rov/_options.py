@@ -1,6 +1,7 @@
 """What the commands for ROV pilots share: whom to ask, and what an answer rests on."""
 
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,7 +11,7 @@ from seacage.service._cli._console import refusal
 from seacage.service._cli._options import InFolder, ServedCage
 
 if TYPE_CHECKING:
-    from seacage.service._rov._client import AbstractAsker
+    from seacage.service._rov._client import Ask
     from seacage.service._schemas._clearance import ClearanceAnswer, InspectionAnswer
 
 Below = Annotated[float, typer.Option(min=0.0, max=100.0, help="Distance asked about, m.")]
@@ -43,17 +44,17 @@ class NetOptions:
     allow_stale: Annotated[bool, typer.Option("--allow-stale")] = False
     max_age: Annotated[float | None, typer.Option("--max-age", min=0.0)] = None
 
-    def asker(self) -> "AbstractAsker":
-        """Answers from the twin's folder, or from the service.
+    def asker(self) -> "Ask":
+        """A function that answers from the twin's folder, or from the service.
 
         Raises InputError: both or neither was named, or the twin without a current.
         """
-        from seacage.service._rov._client import LocalAsker, ServiceAsker
+        from seacage.service._rov._client import ServiceAsker, ask_net
 
         if (self.twin is None) == (self.to is None):
             raise refusal("Say whom to ask: --twin for a folder, or --to for a service.")
         if self.to is not None:
-            return ServiceAsker(address=self.to, cage=self.cage, token=self.token)
+            return ServiceAsker(address=self.to, cage=self.cage, token=self.token).ask
         if self.twin is None or self.current_speed is None or self.current_to is None:
             raise refusal(
                 "With --twin the current has to be said: --current-speed in m/s and --current-to "
@@ -70,7 +71,8 @@ class NetOptions:
             hs=self.hs,
             wave_from=self.wave_from,
         )
-        return LocalAsker(PredictedNet.under(Twin.read(self.twin), sea, t=datetime.now(UTC)))
+        predicted = PredictedNet.under(Twin.read(self.twin), sea, t=datetime.now(UTC))
+        return partial(ask_net, predicted)
 
 
 def about_rows(

@@ -90,6 +90,11 @@ RELATIONS: Mapping[str, Mapping[str, str]] = {
 }
 
 
+def leads_of(of: str) -> list[str]:
+    """What an entity of a set leads to, Observations included."""
+    return [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
+
+
 def _are_related(of: str, id: str, to: str, other: str) -> bool:  # noqa: A002
     """Whether entities of two sets belong together, by their ids.
 
@@ -137,8 +142,7 @@ class Catalogue:
 
     def _with_links(self, of: str, entity: Entity) -> Entity:
         link = f"{self.address}{ROOT}/{of}('{entity['@iot.id']}')"
-        names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
-        leading = {f"{name}@iot.navigationLink": f"{link}/{name}" for name in names}
+        leading = {f"{name}@iot.navigationLink": f"{link}/{name}" for name in leads_of(of)}
         return {"@iot.id": entity["@iot.id"], "@iot.selfLink": link} | entity | leading
 
 

@@ -19,6 +19,7 @@ from seacage.service._http._sensorthings._entities import (
     SETS,
     Catalogue,
     Entity,
+    leads_of,
     observation,
 )
 from seacage.service._http._sensorthings._query import (
@@ -194,7 +195,8 @@ class _Answer:
         if (of, name) == ("Datastreams", OBSERVATIONS):
             page = self.observations(entity, query)
         elif name not in RELATIONS[of]:
-            raise InputError(f"$expand: {of} lead to no {name!r}. {_there(of)}")
+            there = ", ".join(leads_of(of))
+            raise InputError(f"$expand: {of} lead to no {name!r}. There are {there}.")
         else:
             page = self.follow(of, entity, name, query)
             if name not in SETS:
@@ -342,11 +344,6 @@ def _select(of: str, entity: Entity, query: QueryOptions) -> Entity:
 
 def _property(name: str) -> str:
     return f"@iot.{name}" if name in {"id", "selfLink"} else name
-
-
-def _there(of: str) -> str:
-    names = [*RELATIONS[of], *([OBSERVATIONS] if of == "Datastreams" else [])]
-    return f"There are {', '.join(names)}."
 
 
 def _onward(query: QueryOptions, read: list[Sample], *, newest: bool) -> dict[str, str]:
