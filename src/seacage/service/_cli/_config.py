@@ -1,6 +1,8 @@
 """``seacage config``: what a service would be told, and whether it can be so."""
 
 import importlib.util
+import os
+import socket
 import ssl
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -123,8 +125,6 @@ def _check_certificate(settings: "Settings") -> str:
 
 
 def _writable(folder: Path) -> str:
-    import os
-
     there = next(one for one in (folder, *folder.absolute().parents) if one.exists())
     if not there.is_dir() or not os.access(there, os.W_OK | os.X_OK):
         raise refusal(f"{there} takes no files. Mend its rights, or name another as data.")
@@ -159,8 +159,6 @@ def _check_store(settings: "Settings", *, reach: bool) -> str:
 
 
 def _check_broker(settings: "Settings", *, reach: bool) -> str:
-    import socket
-
     from seacage.service._mqtt._broker import Broker
     from seacage.service._mqtt._topics import Topics
 

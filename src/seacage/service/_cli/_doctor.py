@@ -4,7 +4,7 @@ import importlib.util
 import platform
 import shutil
 import socket
-import sys
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -58,9 +58,7 @@ def doctor(
 
 
 def _python() -> Found:
-    fine = sys.version_info >= (3, 11)
-    message = f"{platform.python_version()} on {platform.system()} {platform.machine()}"
-    return "ok" if fine else "wrong", message
+    return "ok", f"{platform.python_version()} on {platform.system()} {platform.machine()}"
 
 
 def _physics() -> Found:
@@ -140,8 +138,6 @@ def _extra(name: str) -> Found:
 
 
 def _version(package: str) -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
     try:
         return version(package)
     except PackageNotFoundError:

@@ -1,7 +1,7 @@
 """Kinds of options, options that several commands share, and groups of them."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -67,8 +67,6 @@ class SeaOptions:
 
     def state(self) -> "SeaState":
         """The sea state that they describe."""
-        from dataclasses import asdict
-
         from seacage.ocean import SeaState
 
         return SeaState(**asdict(self))

@@ -1,6 +1,7 @@
 """``seacage replay``: a record through a twin into files, or into a running service."""
 
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -90,8 +91,6 @@ def _answer(record: Path, folder: Path, out: list[Path], *, batched: bool) -> No
 
 def _step_through(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
     """Step through a record as a live service would; the same answers as in blocks."""
-    from dataclasses import replace
-
     from seacage.service._export import join_answers
     from seacage.service._live._past import answer_in
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import asdict
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -79,8 +80,6 @@ def if_parted(
     Options:
         twin: Folder of the twin.
     """
-    from datetime import UTC, datetime
-
     from seacage.service._live._answers import what_if_parted
     from seacage.twin import Answered, Metocean, Twin
 

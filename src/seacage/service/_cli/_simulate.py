@@ -1,5 +1,6 @@
 """``seacage simulate``: one sea state in time."""
 
+from importlib.metadata import version
 from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -131,8 +132,7 @@ def simulate(
         from seacage.dynamics import rest_shape
         from seacage.figures import write_animation
 
-        rest = rest_shape(subject, mooring=mooring)
-        motion = _motion(rest, state, waves, history, spin_up)
+        motion = _motion(rest_shape(subject, mooring=mooring), state, waves, history, spin_up)
         with progress_bar() as progress:
             write_animation(animation, subject, motion, progress=progress)
         answer["animation"] = str(animation)
@@ -314,8 +314,6 @@ def _write(
     history: "History",
     settings: dict[str, str | int | float],
 ) -> None:
-    from importlib.metadata import version
-
     import numpy as np
 
     from seacage.records import STATISTICS, TWINES, HistoryRecord, write_history

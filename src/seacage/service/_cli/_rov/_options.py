@@ -1,6 +1,7 @@
 """What the commands for ROV pilots share: whom to ask, and what an answer rests on."""
 
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -60,8 +61,6 @@ class NetOptions:
                 "With --twin the current has to be said: --current-speed in m/s and --current-to "
                 "in degrees."
             )
-        from datetime import UTC, datetime
-
         from seacage.ocean import SeaState
         from seacage.twin import PredictedNet, Twin
 
