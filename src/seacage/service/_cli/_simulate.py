@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from seacage.figures import Motion
     from seacage.ocean import SeaState, Waves
 
+Settings = dict[str, str | int | float]  # of a simulation, with the unit in each key
 _SMOOTH = 0.5  # between samples that an animation can follow waves by [s]
 
 
@@ -170,10 +171,7 @@ def _refuse_failure(history: "History") -> None:
 
 
 def _answer(
-    cage: "Cage | Structure",
-    history: "History",
-    warnings: list[str],
-    settings: dict[str, str | int | float],
+    cage: "Cage | Structure", history: "History", warnings: list[str], settings: Settings
 ) -> dict[str, object]:
     from seacage.dynamics import BODIES
 
@@ -308,11 +306,7 @@ def _line(statistics: "Statistics", scale: float, place: int | tuple[int, ...]) 
 
 
 def _write(
-    path: Path,
-    cage: "Cage | Structure",
-    sea: "SeaState",
-    history: "History",
-    settings: dict[str, str | int | float],
+    path: Path, cage: "Cage | Structure", sea: "SeaState", history: "History", settings: Settings
 ) -> None:
     import numpy as np
 

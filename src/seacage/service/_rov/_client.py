@@ -21,17 +21,13 @@ class AskError(SeacageError):
 Query = ClearanceQuery | InspectionQuery
 Ask = Callable[[str, Query], bytes]  # answers a call about one net as a service does: the body
 
-_CALLS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
+# What answers a call about a predicted net
+ANSWERS: Mapping[str, Callable[[PredictedNet, Any], bytes]] = {
     "clearance": lambda net, query: clearance_answer(net, query).model_dump_json().encode(),
     "inspection": lambda net, query: inspection_answer(net, query).model_dump_json().encode(),
     "inspection.mcap": inspection_mcap,
     "inspection.geojson": inspection_geojson,
 }
-
-
-def ask_net(net: PredictedNet, call: str, query: Query) -> bytes:
-    """Answer a call from a predicted net."""
-    return _CALLS[call](net, query)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

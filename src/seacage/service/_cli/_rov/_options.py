@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -50,7 +49,7 @@ class NetOptions:
 
         Raises InputError: both or neither was named, or the twin without a current.
         """
-        from seacage.service._rov._client import ServiceAsker, ask_net
+        from seacage.service._rov._client import ANSWERS, ServiceAsker
 
         if (self.twin is None) == (self.to is None):
             raise refusal("Say whom to ask: --twin for a folder, or --to for a service.")
@@ -71,7 +70,7 @@ class NetOptions:
             wave_from=self.wave_from,
         )
         predicted = PredictedNet.under(Twin.read(self.twin), sea, t=datetime.now(UTC))
-        return partial(ask_net, predicted)
+        return lambda call, query: ANSWERS[call](predicted, query)
 
 
 def about_rows(
