@@ -161,9 +161,10 @@ class Structure(TomlFile):
             for node, place in zip(nodes, places, strict=True):
                 position[node] = place.position
         for index, net in enumerate(self.net):
+            nodes = self.net_nodes(index)
             if not net.lower:
-                position[self.net_nodes(index)[-1, 0]] = [0.0, 0.0, position[self._edge(net), 2]]
-            _fill(position, self.net_nodes(index).T)
+                position[nodes[-1, 0]] = [0.0, 0.0, position[nodes[0, 0], 2]]
+            _fill(position, nodes.T)
         for index in range(len(self.tie)):
             _fill(position, self.tie_nodes(index))
         for index in range(len(self.line)):
@@ -184,14 +185,13 @@ class Structure(TomlFile):
 
     def net_panels(self, index: int) -> Int[np.ndarray, "panel 4"]:
         """Corners of a net's panels, by its number, level by level."""
-        nodes = self.net_nodes(index)
+        net, nodes = self.net[index], self.net_nodes(index)
         beside = np.roll(nodes, -1, axis=1)
         corners = np.stack([nodes[:-1], nodes[1:], beside[1:], beside[:-1]], axis=-1)
-        if not self.net[index].lower:
+        if not net.lower:
             corners[-1, :, 2:] = beside[-2, :, None]  # upper, centre, beside, beside
-        if self._faces_up(self.net[index]):
-            corners[:, :, [1, 3]] = corners[:, :, [3, 1]]
-            if not self.net[index].lower:
+            if all(other.lower != net.upper for other in self.net):
+                corners[:, :, [1, 3]] = corners[:, :, [3, 1]]
                 corners[-1] = np.stack([nodes[-2], beside[-2], nodes[-1], nodes[-1]], axis=-1)
         return corners.reshape(-1, 4)
 
@@ -298,14 +298,8 @@ class Structure(TomlFile):
     def _members(self, tie: Tie) -> int:
         return -(-self.spokes // tie.every)
 
-    def _edge(self, net: Net) -> int:
-        return int(self.ring_nodes(net.upper)[0])
-
     def _depth(self, ring: int) -> float:
         return self.ring[ring].depth
-
-    def _faces_up(self, net: Net) -> bool:
-        return not net.lower and all(other.lower != net.upper for other in self.net)
 
     def _net_edges(self, index: int) -> Int[np.ndarray, "edge 2"]:
         nodes = self.net_nodes(index)

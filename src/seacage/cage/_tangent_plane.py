@@ -35,7 +35,8 @@ class TangentPlane:
 
     def local(self, latitude: PerPoint, longitude: PerPoint, depth: PerPoint) -> Point3:
         """East, north and up of places at a latitude, a longitude [deg] and a depth [m]."""
-        away = _on_ellipsoid(latitude, longitude) - self._centre
+        centre = _on_ellipsoid(np.array([self.latitude]), np.array([self.longitude]))
+        away = _on_ellipsoid(latitude, longitude) - centre
         east, north, _ = (away @ self._axes.T).T
         return self._near(np.column_stack([east, north, -depth]))
 
@@ -50,10 +51,6 @@ class TangentPlane:
             latitude = latitude + np.rad2deg(miss[:, 1] / meridian)
             longitude = longitude + np.rad2deg(miss[:, 0] / parallel)
         return latitude, (longitude + 180.0) % 360.0 - 180.0, -position[:, 2]
-
-    @property
-    def _centre(self) -> Float[np.ndarray, " 3"]:
-        return _on_ellipsoid(np.array([self.latitude]), np.array([self.longitude]))[0]
 
     @property
     def _axes(self) -> Float[np.ndarray, "3 3"]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import GRAVITY, InputError, fold_degrees, towards
+from seacage.conventions import GRAVITY, InputError, Rows, fold_degrees, towards
 from seacage.ocean._sea_state import SeaState
 from seacage.ocean._spectrum import spectrum
 
@@ -37,7 +37,7 @@ def wavenumber(angular_frequency: PerN, *, depth: float) -> PerN:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Waves:
+class Waves(Rows):
     """A sum of linear waves, each long-crested.
 
     Parameters
@@ -75,9 +75,7 @@ class Waves:
 
     def longer(self, shortest: float) -> "Waves":
         """The components at least so long [m]."""
-        kept = self.wavenumber * shortest <= 2.0 * np.pi
-        names = ("amplitude", "angular_frequency", "wavenumber", "phase", "direction")
-        return replace(self, **{name: getattr(self, name)[kept] for name in names})
+        return self.rows(self.wavenumber * shortest <= 2.0 * np.pi)
 
     @property
     def variance(self) -> float:
@@ -229,7 +227,9 @@ def water_motion(
     cosine, sine = np.cos(angle), np.sin(angle)
     elevation = np.asarray(cosine @ waves.amplitude)
     wet = position[..., 2] <= elevation
-    height = _stretch(position[..., 2], elevation, waves.depth)
+    # Points above the surface are zeroed below; the clip keeps their exponentials finite.
+    stretched = (position[..., 2] - elevation) * waves.depth / (waves.depth + elevation)
+    height = np.asarray(np.clip(stretched, -waves.depth, 0.0))
     along, up = _decay(waves.wavenumber, height, waves.depth)
     omega = waves.angular_frequency
     speed = waves.amplitude * waves.intrinsic_frequency
@@ -261,11 +261,6 @@ def pressure_head(waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]) ->
     share = np.exp(k * height) * (1.0 + bounce) / (1.0 + np.exp(-2.0 * k * depth))
     cosine = np.cos(_angle(waves, position[..., :2], time))
     return np.asarray((share * cosine) @ waves.amplitude)
-
-
-def _stretch(z: Float[np.ndarray, "*#n"], elevation: PerN, depth: float) -> PerN:
-    # Points above the surface are zeroed later; the clip keeps their exponentials finite.
-    return np.asarray(np.clip((z - elevation) * depth / (depth + elevation), -depth, 0.0))
 
 
 def _decay(k: Float[np.ndarray, " wave"], z: PerN, depth: float) -> tuple[NWave, NWave]:
