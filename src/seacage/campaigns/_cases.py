@@ -194,6 +194,7 @@ def _simulate_block(
     block: CaseBlock,
 ) -> tuple[dict[str, np.ndarray], Float[np.ndarray, "coordinate coordinate"] | None]:
     by = block.simulator
+    pieces = max(1, min(simulation_lanes(), int(block.duration // _PIECE)))
     ours = ("method", "draw_mooring")
     settings = {one.name: getattr(by, one.name) for one in fields(by) if one.name not in ours}
     history = simulate(
@@ -202,14 +203,10 @@ def _simulate_block(
         duration=block.duration,
         seed=block.wave_seeds,
         sample_every=None,
-        pieces=_pieces(block.duration) if by.draw_mooring else 1,
+        pieces=pieces if by.draw_mooring else 1,
         **settings,
     )
     return _statistics(history), _moment(history) if by.second_moment else None
-
-
-def _pieces(duration: float) -> int:
-    return max(1, min(simulation_lanes(), int(duration // _PIECE)))
 
 
 def _statistics(history: History) -> dict[str, np.ndarray]:

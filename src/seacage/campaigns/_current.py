@@ -49,14 +49,15 @@ def generated_current(
         raise InputError(f"generated_current: {days:g} days hold no step of {every_s:g} s.")
     rng = np.random.default_rng(seed)
     time = np.arange(steps) * every_s
-    along_across = _tide(rng, time) + np.array([_DRIFT, 0.0])
+    along, across = (_tide(rng, time) + np.array([_DRIFT, 0.0])).T
+    to = np.full(steps, _STREAM_TO)
+    stream = towards(along, to) + towards(across, to + 90.0)
     weather = wandering(rng, steps, sd=0.09, step_s=every_s, memory_s=36.0 * _HOUR)
     turbulence = wandering(rng, steps, sd=0.03, step_s=every_s, memory_s=0.5 * _HOUR)
-    velocity = _turn(along_across, _STREAM_TO) + weather + turbulence
     record = Record(
         stream="buoy-1",
         time=instant(start) + (time * 1e6).astype("timedelta64[us]"),
-        values=_report(rng, velocity),
+        values=_report(rng, stream + weather + turbulence),
         origin=Origin.VIRTUAL_FIELD,
         notes=(f"A generated current: tide, weather and noise from seed {seed}.",),
     )
@@ -64,19 +65,12 @@ def generated_current(
 
 
 def _tide(rng: np.random.Generator, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 2"]:
-    """Velocity along and across the stream [m/s]."""
+    """Velocity along and to the right of the stream [m/s]."""
     velocity = np.zeros((len(time), 2))
     for period, along, across in _TIDES.values():
         phase = 2.0 * np.pi * (time / (period * _HOUR) + rng.uniform())
         velocity += np.column_stack([along * np.cos(phase), across * np.sin(phase)])
     return velocity
-
-
-def _turn(along_across: Float[np.ndarray, "t 2"], to: float) -> Float[np.ndarray, "t 2"]:
-    """East and north, of components along and to the right of a direction."""
-    along, across = along_across.T
-    to_each = np.full(len(along), to)
-    return towards(along, to_each) + towards(across, to_each + 90.0)
 
 
 def _report(

@@ -201,21 +201,16 @@ def read_events(path: str | Path) -> tuple[Event, ...]:
 
     Raises InputError: no TOML, a key that is missing or unknown, a value that ``Event`` refuses.
     """
-    table: Mapping[str, object] = parse_toml(read_text(path), str(path))
+    table = parse_toml(read_text(path), str(path))
     entries = table.get("event")
-    if len(table) != 1 or not _are_tables(entries):
+    tables = isinstance(entries, list) and all(isinstance(entry, dict) for entry in entries)
+    if len(table) != 1 or not tables:
         raise InputError(f"{path}: write each event as a table [[event]], and nothing else.")
     events = [
         Event(**_arguments(entry, f"{path}, [[event]] {number}"))
-        for number, entry in enumerate(cast("list[dict[str, object]]", entries), start=1)
+        for number, entry in enumerate(table["event"], start=1)
     ]
     return tuple(sorted(events, key=lambda event: event.at))
-
-
-def _are_tables(entries: object) -> bool:
-    return isinstance(entries, list) and all(
-        isinstance(entry, dict) for entry in cast("list[object]", entries)
-    )
 
 
 def _arguments(table: Mapping[str, object], where: str) -> dict[str, Any]:

@@ -212,7 +212,7 @@ def _means(
     weather = request.weather
     current = np.array([[weather.current(second) for second in row] for row in looks.tolist()])
     middle = begin + length / 2.0
-    heights = [_height(weather, second) for second in middle.tolist()]
+    variances = [weather.waves(second).variance for second in middle.tolist()]
     return TrueMeans(
         time=request.time[first],
         length=length,
@@ -223,7 +223,7 @@ def _means(
         bridle_tension_max=each.max(axis=1),
         node_position=shape,
         current_velocity=current.mean(axis=1),
-        hs=np.array(heights),
+        hs=4.0 * np.sqrt(np.array(variances)),
         growth=request.hidden.fouling.grown(middle / _DAY),
     )
 
@@ -241,8 +241,3 @@ def _with_waves(buoy: Record, waves: Record) -> Record:
     columns = dict(zip(_WAVES, held.T, strict=True))
     notes = tuple(dict.fromkeys(buoy.notes + waves.notes))
     return check_record(replace(buoy, values={**buoy.values, **columns}, flags={}, notes=notes))
-
-
-def _height(weather: Weather, second: float) -> float:
-    """Significant wave height of the components [m]."""
-    return 4.0 * float(np.sqrt(np.sum(weather.waves(second).amplitude ** 2) / 2.0))

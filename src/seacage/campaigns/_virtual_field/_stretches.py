@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Self
@@ -27,8 +27,8 @@ class TrueCage:
     """The cage that is followed, and where it is looked at."""
 
     toml: str  # of the true cage, on its finer mesh
+    # As ``follow`` takes them
     refined: int  # how much finer it is than drawn
-    # Of netting and ropes, as ``follow`` takes them
     law: MovingLaw
     skin_friction: float | None
     lift_factor: float
@@ -170,7 +170,10 @@ def simulate_stretches(
     groups = [
         Group(
             stretches=alike,
-            weathers=tuple(_weather_of(weather, one, timetable, every) for one in alike),
+            weathers=tuple(
+                weather.between(start - timetable.spin_up, start + timetable.stretch)
+                for start in (one.first * every for one in alike)
+            ),
             cage=cage,
             timetable=timetable,
             every=every,
@@ -191,37 +194,27 @@ def simulate_stretches(
 
 def simulate_group(group: Group) -> list[Passed]:
     """Simulate a group of stretches."""
-    timetable = group.timetable
+    timetable, settings = group.timetable, asdict(group.cage)
+    toml, drawn = settings.pop("toml"), settings.pop("drawn")
     with one_thread():
         followed = follow(
-            Cage.from_toml(group.cage.toml),
+            Cage.from_toml(toml),
             group.weathers,
             [one.first * group.every for one in group.stretches],
             duration=timetable.stretch,
             every=group.every,
             spin_up=timetable.spin_up,
             time_step=timetable.time_step,
-            law=group.cage.law,
-            skin_friction=group.cage.skin_friction,
-            lift_factor=group.cage.lift_factor,
-            stiffening=group.cage.stiffening,
-            watched=group.cage.watched,
             damaged=group.stretches[0].damaged,
             breaking=group.stretches[0].breaking,
-            refined=group.cage.refined,
-            shape_nodes=group.cage.drawn,
+            shape_nodes=drawn,
             shape_every=timetable.mean,
             progress=lambda _, done, total: report_progress(len(group.stretches) * done / total),
+            **settings,
         )
     return [
         _stretch_of_lane(followed, lane, weather) for lane, weather in enumerate(group.weathers)
     ]
-
-
-def _weather_of(weather: Weather, stretch: Stretch, timetable: Timetable, every: float) -> Weather:
-    """Weather of a stretch, its spin-up included."""
-    start = stretch.first * every
-    return weather.between(start - timetable.spin_up, start + timetable.stretch)
 
 
 def _stretch_of_lane(followed: Followed, lane: int, weather: Weather) -> Passed:

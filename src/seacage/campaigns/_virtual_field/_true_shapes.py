@@ -16,7 +16,6 @@ from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import current_at_cage
 from seacage.conventions import InputError, Progress, Result, compass, no_progress, towards
 from seacage.ocean import SeaState
-from seacage.records import Record
 
 _START = datetime(2020, 1, 18, tzinfo=UTC)  # of the records; no tide here knows the year
 _DAYS = 50.0
@@ -98,9 +97,9 @@ def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
     # The word keeps these draws apart from those of a field that has the same seed.
     weather, choice, turn = np.random.default_rng([seed, *b"shapes"]).spawn(3)
     built = hidden.drawn(int(turn.integers(2**31)))
-    buoy = _turn_current(
-        generated_current(seed, start=_START, days=_DAYS), turn.uniform(0.0, 360.0)
-    )
+    buoy = generated_current(seed, start=_START, days=_DAYS)
+    turned = (buoy.values["current_to_deg"] + turn.uniform(0.0, 360.0)) % 360.0
+    buoy = replace(buoy, values={**buoy.values, "current_to_deg": turned})
     at = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
     seconds = np.arange(0.0, at[-1] + _EVERY_S, _EVERY_S)
     current = current_at_cage(buoy, seconds, hidden=built, rng=weather)
@@ -116,12 +115,6 @@ def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
         velocity=current[np.searchsorted(seconds, at[rows])],
         growth=np.rint(grown / _GROWTH_STEP) * _GROWTH_STEP,
     )
-
-
-def _turn_current(buoy: Record, degrees: float) -> Record:
-    values = dict(buoy.values)
-    values["current_to_deg"] = (values["current_to_deg"] + degrees) % 360.0
-    return replace(buoy, values=values)
 
 
 def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[CaseBlock, np.ndarray]:
