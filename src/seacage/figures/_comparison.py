@@ -143,14 +143,9 @@ def density_panel(axes: "Axes", comparison: Comparison, *, multi: bool) -> "Poly
     axes.plot(ends, slope * ends + intercept, color=FIT, lw=1.3, label="Best fit")
     axes.set(xlim=limits, ylim=limits, aspect="equal")
     axes.set_xlabel(f"{comparison.sensor}, {comparison.origin} [{comparison.unit}]")
-    axes.text(
-        0.04,
-        0.96,
-        f"MAE {error:.3g} {comparison.unit}",
-        transform=axes.transAxes,
-        va="top",
-        bbox={"boxstyle": "round,pad=0.3", "fc": "white", "ec": "none", "alpha": 0.85},
-    )
+    text = f"MAE {error:.3g} {comparison.unit}"
+    box = {"boxstyle": "round,pad=0.3", "fc": "white", "ec": "none", "alpha": 0.85}
+    axes.text(0.04, 0.96, text, transform=axes.transAxes, va="top", bbox=box)
     return cells
 
 

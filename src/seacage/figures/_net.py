@@ -1,6 +1,6 @@
 """The net in side and top view, coloured by how far each panel has moved."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 Node3 = Float[np.ndarray, "node 3"]
 PerBridle = Float[np.ndarray, " bridle"]
 View = Float[np.ndarray, "2 3"]
+_ARROW = {"arrowstyle": "-|>", "color": LOW, "lw": 1.6}
 
 
 def net_figure(
@@ -147,12 +148,7 @@ def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
     axes.legend(loc="lower left", handletextpad=0.2)
     if sea is not None and sea.current_speed > 0.0:
         low, _ = axes.get_xlim()
-        axes.annotate(
-            "",
-            (low + 18.0, -14.0),
-            (low + 2.0, -14.0),
-            arrowprops={"arrowstyle": "-|>", "color": LOW, "lw": 1.6},
-        )
+        axes.annotate("", (low + 18.0, -14.0), (low + 2.0, -14.0), arrowprops=_ARROW)
         axes.text(low + 2.0, -12.6, f"{sea.current_speed:.2g} m/s", color=LOW)
 
 
@@ -168,19 +164,12 @@ def _finish_top(
         place = np.zeros(2)
         place[axis] = -np.sign(along[axis]) * (cage.frame.reach + cage.collar.radius) / 2.0
         tail, tip = tuple(place - 6.0 * along), tuple(place + 6.0 * along)
-        axes.annotate("", tip, tail, arrowprops={"arrowstyle": "-|>", "color": LOW, "lw": 1.6})
+        axes.annotate("", tip, tail, arrowprops=_ARROW)
     if tension is None:
         return
     ends = position[cage.bridle_nodes, :2]
     middle = 0.7 * ends + 0.3 * cage.corner_position[cage.bridle_corner, :2]
+    box = {"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85}
+    look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 6.5, "bbox": box}
     for (x, y), newton in zip(middle, tension, strict=True):
-        axes.text(
-            x,
-            y,
-            f"{newton / 1000.0:.0f} kN",
-            ha="center",
-            va="center",
-            fontsize=6.5,
-            zorder=7,
-            bbox={"boxstyle": "round,pad=0.15", "fc": "white", "ec": "none", "alpha": 0.85},
-        )
+        axes.text(x, y, f"{newton / 1000.0:.0f} kN", zorder=7, **look)

@@ -49,12 +49,8 @@ def shape_error_figure(
         axes.set_yscale("log")
         axes.set_xlabel("Current speed [m/s]")
         axes.set_ylabel("Mean absolute node error [m]")
-        head(
-            axes,
-            "Whole shapes, held-out simulations",
-            origin=origin,
-            legend=len(errors) * (len(errors) <= ABREAST),
-        )
+        abreast = len(errors) if len(errors) <= ABREAST else 0
+        head(axes, "Whole shapes, held-out simulations", origin=origin, legend=abreast)
         if len(errors) > ABREAST:
             figure.legend(loc="outside lower center", ncols=4)
     return figure

@@ -64,14 +64,8 @@ def _draw(axes: Any, computed: Node3, predicted: Node3, edges: Int[np.ndarray, "
     worst = int(np.argmax(distance))
     pair = np.stack([computed[worst], predicted[worst]])
     axes.plot(*pair.T, color="black", lw=1.4, marker="o", ms=2.5)
-    axes.text2D(
-        0.5,
-        -0.04,
-        f"mean {distance.mean():.2g} m, worst node {distance[worst]:.2g} m",
-        transform=axes.transAxes,
-        ha="center",
-        fontsize=8.0,
-    )
+    text = f"mean {distance.mean():.2g} m, worst node {distance[worst]:.2g} m"
+    axes.text2D(0.5, -0.04, text, transform=axes.transAxes, ha="center", fontsize=8.0)
     _frame(axes, np.concatenate([computed, predicted]))
 
 

@@ -11,7 +11,6 @@ from seacage.figures._net import draw_bridles, draw_ghost, draw_net
 from seacage.figures._style import INK, MUTED, blank_figure, style
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _ROOM = 3.0  # shown round the outermost net [m]
@@ -65,7 +64,9 @@ def states_figure(
                 look = {"view": view, "toward": toward, "largest": float(moved.max())}
                 draw_net(axes, cage, position, far, **look)
                 draw_bridles(axes, cage, position, view)
-                _finish(axes, extent)
+                axes.set(xlim=extent[0], ylim=extent[1], aspect="equal")
+                axes.grid(visible=False)
+                axes.label_outer()
         _label(rows, current_speed, origin)
         bar = figure.colorbar(rows[0, 0].collections[1], ax=rows, shrink=0.8, aspect=32, pad=0.01)
         bar.set_label("Displacement from rest [m]")
@@ -85,12 +86,6 @@ def _grid(count: int, extents: list[_Extent]) -> "tuple[Figure, np.ndarray]":
 def _extent(seen: Float[np.ndarray, "n 2"]) -> _Extent:
     low, high = seen.min(axis=0) - _ROOM, seen.max(axis=0) + _ROOM
     return (float(low[0]), float(high[0])), (float(low[1]), float(high[1]))
-
-
-def _finish(axes: "Axes", extent: _Extent) -> None:
-    axes.set(xlim=extent[0], ylim=extent[1], aspect="equal")
-    axes.grid(visible=False)
-    axes.label_outer()
 
 
 def _label(rows: np.ndarray, speed: Float[np.ndarray, " case"], origin: Origin) -> None:

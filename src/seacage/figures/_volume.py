@@ -88,11 +88,10 @@ def volume_figure(
 def _draw_mark(axes: "Axes", mark: VolumeMark) -> None:
     place = (mark.current_speed, 100.0 * mark.fraction)
     axes.plot(*place, "D", color=FIT, mec="white", mew=0.9, ms=6.5, zorder=4)
-    name = f"{mark.name}, > {mark.current_speed:g} m/s" if mark.at_least else mark.name
-    away = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": INK}
+    name, offset = mark.name, (-7, -1)
     if mark.at_least:
-        look = {"arrowstyle": "-|>", "color": FIT, "lw": 1.2}
-        axes.annotate("", (place[0] + 0.09, place[1]), place, arrowprops=look)
-        axes.annotate(name, place, (8, -12), ha="right", **away)
-    else:
-        axes.annotate(name, place, (-7, -1), ha="right", **away)
+        name, offset = f"{mark.name}, > {mark.current_speed:g} m/s", (8, -12)
+        arrow = {"arrowstyle": "-|>", "color": FIT, "lw": 1.2}
+        axes.annotate("", (place[0] + 0.09, place[1]), place, arrowprops=arrow)
+    look = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": INK}
+    axes.annotate(name, place, offset, ha="right", **look)
