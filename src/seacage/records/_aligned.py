@@ -128,19 +128,15 @@ def _average(
 def _means(
     columns: Mapping[str, np.ndarray], mean: Callable[[np.ndarray], np.ndarray]
 ) -> dict[str, np.ndarray]:
-    if len(columns) == 1:
-        ((key, column),) = columns.items()
-        if not key.endswith("_deg"):
-            return {key: mean(column)}
-        east, north = (mean(part(np.radians(column))) for part in (np.sin, np.cos))
-        opposed = np.hypot(east, north) < _OPPOSED
-        return {key: np.where(opposed, np.nan, np.degrees(np.arctan2(east, north)) % 360.0)}
-    speed, angle = columns["current_speed_m_s"], np.radians(columns["current_to_deg"])
-    east, north = mean(speed * np.sin(angle)), mean(speed * np.cos(angle))
-    return {
-        "current_speed_m_s": np.hypot(east, north),
-        "current_to_deg": np.degrees(np.arctan2(east, north)) % 360.0,
-    }
+    *lengths, key = columns  # a direction comes after the speed that goes with it
+    if not key.endswith("_deg"):
+        return {key: mean(columns[key])}
+    angle, length = np.radians(columns[key]), columns[lengths[0]] if lengths else 1.0
+    east, north = mean(length * np.sin(angle)), mean(length * np.cos(angle))
+    size, direction = np.hypot(east, north), np.degrees(np.arctan2(east, north)) % 360.0
+    if lengths:
+        return {lengths[0]: size, key: direction}
+    return {key: np.where(size < _OPPOSED, np.nan, direction)}
 
 
 def _windows(

@@ -292,7 +292,10 @@ def _create_block_moments(group: Any, blocks: int, coordinates: int) -> None:
 def _sum_up(path: Path, *, answers: int) -> None:
     """Write the second moment of all blocks, in their order, and put them away."""
     try:
-        total = _sum(_array(path, f"{_BLOCKS}/moment"))
+        moments = _array(path, f"{_BLOCKS}/moment")
+        total = np.zeros(moments.shape[1:])
+        for number in range(moments.shape[0]):
+            total += moments[number]
     except FileNotFoundError:  # another process did it meanwhile
         return
     if np.isnan(total).any():  # the same, a little later: missing blocks read as NaN
@@ -306,13 +309,6 @@ def _sum_up(path: Path, *, answers: int) -> None:
 def _beside(path: Path, kind: str) -> Path:
     """A hidden neighbour of a store, with a name that no other process has."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.{kind}")
-
-
-def _sum(moments: Any) -> Float[np.ndarray, "coordinate coordinate"]:
-    total = np.zeros(moments.shape[1:])
-    for number in range(moments.shape[0]):
-        total += moments[number]
-    return total
 
 
 def _move(unborn: Path, path: Path) -> None:

@@ -29,7 +29,6 @@ NETCDF_TROUBLE = (
     IndexError,
     OverflowError,
     MemoryError,
-    NotImplementedError,
 )
 
 _FILE_BYTES = 4 << 30

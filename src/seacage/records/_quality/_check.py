@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime, timedelta
+from datetime import datetime
 
 import numpy as np
 from jaxtyping import Int
@@ -13,9 +13,7 @@ from seacage.records._quality._prefilter import Columns, candidate_rows
 from seacage.records._quality._tests import ATTENUATED, Anchor, Finding, evaluate
 from seacage.records._record import Record
 from seacage.records._sample import Sample
-from seacage.records._times import microseconds
-
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
+from seacage.records._times import microseconds, moment
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -226,7 +224,7 @@ def _stretch_findings(
 
 
 def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> list[Amendment]:
-    t = _EPOCH + timedelta(microseconds=anchor.time)
+    t = moment(np.datetime64(anchor.time, "us"))
     return [
         Amendment(
             stream=stream,

@@ -94,10 +94,9 @@ def _defaults() -> Mapping[str, Any]:
 
 
 def _ranges() -> dict[str, Range]:
-    table = _defaults()["ranges"]
     return {
         key: Range(fail=tuple(one["fail"]), suspect=tuple(one["suspect"]))
-        for key, one in table.items()
+        for key, one in _defaults()["ranges"].items()
     }
 
 

@@ -221,7 +221,12 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns:
-        one = _find(path, series, column.name)
+        if column.name not in series:
+            raise RecordError(
+                f"{path}: there is no variable {column.name!r} of numbers over time. "
+                f"There are {', '.join(series) or 'none'}."
+            )
+        one = series[column.name]
         _check_unit(path, one, column)
         if column.quantity == "tp" and is_mean_period(one.standard.replace("_", " ")):
             raise RecordError(f"{path}: {column.name} is {one.standard}. {NO_MEAN_PERIOD}")
@@ -426,15 +431,6 @@ def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[_column_map.C
             f"{', '.join(list(STANDARD_NAMES)[:2])}. Declare variables under [columns] of a map."
         )
     return tuple(columns.values())
-
-
-def _find(path: Path, series: Mapping[str, _Series], name: str) -> _Series:
-    if name not in series:
-        raise RecordError(
-            f"{path}: there is no variable {name!r} of numbers over time. "
-            f"There are {', '.join(series) or 'none'}."
-        )
-    return series[name]
 
 
 def _check_unit(path: Path, one: _Series, column: _column_map.Column) -> None:
