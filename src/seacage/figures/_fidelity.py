@@ -126,20 +126,14 @@ def fouling_figure(
     from matplotlib import colormaps
 
     shades = colormaps[_style.AMOUNT](np.linspace(0.15, 0.8, len(speed)))
+    record = {"color": _style.FIT, "ms": 4.0, "label": "The record's mean"}
     with _style.style():
         figure, axes = _style.panel_grid(len(panels), 2.0, room=0.45, sharex=True)
         for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
             one.axhline(0.0, color=_style.MUTED, lw=0.8)
             for shade, own, at in zip(shades, gap[..., number].T, speed.tolist(), strict=True):
                 one.plot(growth, own, "-", color=shade, lw=1.6, label=f"{at:g} m/s, settled")
-            one.plot(
-                met_growth,
-                met_gap[:, number],
-                "o",
-                color=_style.FIT,
-                ms=4.0,
-                label="The record's mean",
-            )
+            one.plot(met_growth, met_gap[:, number], "o", **record)
             _name_panel(one, panel)
         for one in axes[-4:]:
             one.set_xlabel("Growth [-]")

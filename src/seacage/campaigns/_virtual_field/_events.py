@@ -260,12 +260,8 @@ def _check_target(event: Event, known: Sequence[str]) -> None:
 def _check_awake(event: Event, awake: Spells) -> None:
     until = np.datetime64("9999") if event.until is None else instant(event.until)
     if not np.any((instant(event.at) < awake.end) & (until > awake.start)):
-        windows = " and ".join(
-            f"{start}Z to {end}Z"
-            for start, end in zip(
-                awake.start.astype("datetime64[m]"), awake.end.astype("datetime64[m]"), strict=True
-            )
-        )
+        spells = np.column_stack([awake.start, awake.end]).astype("datetime64[m]")
+        windows = " and ".join(f"{start}Z to {end}Z" for start, end in spells)
         raise InputError(f"Event {event}: it would not be seen. Shackles live from {windows}.")
 
 

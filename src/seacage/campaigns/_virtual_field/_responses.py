@@ -82,19 +82,9 @@ def true_responses(
 ) -> tuple[Responses, CaseSensor]:
     """Settle the true cage on the grid, and at some currents between for the error.
 
-    Parameters
-    ----------
-    cage
-        As drawn.
-    hidden
-        How it truly is.
-    store
-        Folder of the campaigns, which are kept: another call with the same cage, hidden
-        parameters and version reads them.
-    workers
-        Processes; None for one per available core.
-    progress
-        Called as ("virtual field", done, total) in cases.
+    ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``store``: folder of the campaigns,
+    which are kept: another call with the same cage, hidden parameters and version reads them.
+    ``progress``: called as ("virtual field", done, total) in cases.
 
     Returns
     -------

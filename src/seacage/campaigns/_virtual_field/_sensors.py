@@ -9,12 +9,7 @@ from jaxtyping import Float, Int, Shaped
 from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._spells import Spells
-from seacage.campaigns._virtual_field._truth_parameters import (
-    DepthTruth,
-    OutagesTruth,
-    ShackleTruth,
-    TruthParameters,
-)
+from seacage.campaigns._virtual_field._truth_parameters import OutagesTruth, TruthParameters
 from seacage.records import Record, check_record
 
 _WEEK = 604800.0
@@ -71,14 +66,18 @@ def sense(
     ((key, exact),) = truth.values.items()
     noise, faults = rng.spawn(2)
     if key == "tension_kn":
-        values = _load_cell(exact, hidden.shackle, noise)
-        size = hidden.shackle.spike_kn
-        alive = Spells.at_shares(truth.time, hidden.shackle.windows)
+        cell = hidden.shackle
+        gain = 1.0 + cell.gain * noise.uniform(-1.0, 1.0)
+        bias = cell.bias_kn * noise.uniform(-1.0, 1.0)
+        values = gain * exact + bias + noise.normal(scale=cell.noise_sd_kn, size=len(exact))
+        size, alive = cell.spike_kn, Spells.at_shares(truth.time, cell.windows)
     else:
-        values = _sunk(exact, _seconds(truth.time), hidden.depth, noise)
+        errors, seconds = hidden.depth, _seconds(truth.time)
+        drift = noise.choice([-1.0, 1.0]) * errors.drift_m_week * seconds / _WEEK
+        values = exact + drift + noise.normal(scale=errors.noise_sd_m, size=len(exact))
         values += 0.0 if wave_head is None else wave_head
-        values += 0.0 if pressure is None else hidden.depth.m_per_hpa * pressure
-        size, alive = hidden.depth.spike_m, None
+        values += 0.0 if pressure is None else errors.m_per_hpa * pressure
+        size, alive = errors.spike_m, None
     sent = replace(truth, values={key: values}, flags={})
     outages = hidden.outages
     return _receive(sent, events, {key: size}, outages, faults, silence=silence, alive=alive)
@@ -106,17 +105,6 @@ def receive_buoy(
 
 def _seconds(time: Times) -> Values:
     return (time - time[0]) / np.timedelta64(1, "s")
-
-
-def _load_cell(exact: Values, errors: ShackleTruth, rng: np.random.Generator) -> Values:
-    gain = 1.0 + errors.gain * rng.uniform(-1.0, 1.0)
-    bias = errors.bias_kn * rng.uniform(-1.0, 1.0)
-    return gain * exact + bias + rng.normal(scale=errors.noise_sd_kn, size=len(exact))
-
-
-def _sunk(exact: Values, seconds: Values, errors: DepthTruth, rng: np.random.Generator) -> Values:
-    drift = rng.choice([-1.0, 1.0]) * errors.drift_m_week * seconds / _WEEK
-    return exact + drift + rng.normal(scale=errors.noise_sd_m, size=len(exact))
 
 
 def _receive(

@@ -85,26 +85,19 @@ def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
 
 def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
     check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [climatology]")
-    everything = Range(fail=(-math.inf, math.inf), suspect=(-math.inf, math.inf))
     seasons: dict[str, tuple[Season, ...]] = {}
     for key in table:
         inside = f"{where}, [[climatology.{key}]]"
-        seasons[key] = tuple(
-            Season(
-                months=_months(one, inside),
-                range=parse_range(
-                    {name: bounds for name, bounds in one.items() if name != "months"},
-                    everything,
-                    inside,
-                ),
-            )
-            for one in tables_of(table, key, where=inside)
-        )
+        seasons[key] = tuple(_season(one, inside) for one in tables_of(table, key, where=inside))
     return seasons
 
 
-def _months(table: Table, where: str) -> tuple[int, ...]:
+def _season(table: Table, where: str) -> Season:
     months = numbers_of(table, "months", where=where)
     if not months or not set(months) <= set(range(1, 13)):
         raise RecordError(f"{where}: months = {list(months)} are none. Write some of 1 to 12.")
-    return tuple(int(month) for month in months)
+    everything = Range(fail=(-math.inf, math.inf), suspect=(-math.inf, math.inf))
+    bounds = {name: value for name, value in table.items() if name != "months"}
+    return Season(
+        months=tuple(int(month) for month in months), range=parse_range(bounds, everything, where)
+    )

@@ -235,12 +235,8 @@ def _fits(cell: str, form: str) -> bool:
 
 
 def _cadence(cells: Sequence[str], form: str) -> list[str]:
-    times = np.array(
-        [
-            microseconds(t if t.tzinfo else t.replace(tzinfo=UTC))
-            for t in (parse_time(c, form) for c in cells)
-        ]
-    )
+    parsed = (parse_time(cell, form) for cell in cells)
+    times = np.array([microseconds(t if t.tzinfo else t.replace(tzinfo=UTC)) for t in parsed])
     if times.size < 3:
         return []
     late = int(np.sum(times < np.maximum.accumulate(times)))
@@ -284,10 +280,9 @@ def _guess(table: Table, name: str, decimal: str, seen: set[tuple[str, float | N
     if held:
         lines.append(f"# missing = {held}  # if these stand for no value")
     open_ = ", ".join(line.split(" =")[0] for line in lines if '"?"' in line)
-    finding = f"{name!r} looks like {quantity}, {span}" + (
-        f"; fill in its {open_}" if open_ else ""
-    )
-    return _Guess(name, quantity, tuple(lines), f"{finding}.{odd}")
+    missing = f"; fill in its {open_}" if open_ else ""
+    finding = f"{name!r} looks like {quantity}, {span}{missing}.{odd}"
+    return _Guess(name, quantity, tuple(lines), finding)
 
 
 def _quantity(name: str) -> str:
@@ -337,8 +332,9 @@ def _toml(
 ) -> str:
     ignored = ", ".join(_quote(one.name) for one in guesses if not one.quantity)
     depths = sorted({d for one in guesses if one.quantity and (d := _depth(one.name)) is not None})
+    file = "".join(letter if letter.isprintable() else "?" for letter in table.path.name)
     lines = [
-        f"# Begun by `seacage field import --inspect` from {_comment(table.path.name)}. Fill in",
+        f"# Begun by `seacage field import --inspect` from {file}. Fill in",
         '# every "?"; importing refuses the map until then. Comments say where a guess is from.',
         f"title = {_quote(table.path.stem)}",
         'origin = "?"  # "measured" or "computed"',
@@ -367,7 +363,3 @@ def _toml(
 def _quote(text: str) -> str:
     """A TOML string; JSON's escapes are TOML's, but for the DEL that JSON leaves."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
-
-
-def _comment(text: str) -> str:
-    return "".join(letter if letter.isprintable() else "?" for letter in text)

@@ -6,6 +6,7 @@ import io
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -215,8 +216,6 @@ def _list(column: Any) -> list[object]:
 
 
 def _cell(value: object) -> str:
-    from datetime import datetime
-
     if value is None:
         return ""
     return value.isoformat() if isinstance(value, datetime) else str(value)
