@@ -18,12 +18,11 @@ from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather, true_weather
 from seacage.campaigns._waves import usable_waves
 from seacage.conventions import InputError, Progress, SeacageError
-from seacage.records import Record, TrueMeans, check_record, instant
+from seacage.records import GROUPS, Record, TrueMeans, check_record, instant
 
 _DAY, _HOUR = 86400.0, 3600.0
 _LOOKS = 10  # at the water during each mean
 _LATEST = np.timedelta64(6, "h")  # waves are held no longer
-_WAVES = ("hs_m", "tp_s", "wave_from_deg")
 
 
 # No slots: the weather is made once and kept.
@@ -43,7 +42,7 @@ class FieldRequest:
 
     def __post_init__(self) -> None:
         check_events(self.events, self.cage, self.buoy, self.hidden)
-        if self.waves is None and self.buoy.values.keys() >= set(_WAVES):
+        if self.waves is None and self.buoy.values.keys() >= set(GROUPS["waves"]):
             object.__setattr__(self, "waves", self.buoy)
         if self.waves is not None:
             object.__setattr__(self, "buoy", _with_waves(self.buoy, self.waves))
@@ -238,6 +237,6 @@ def _with_waves(buoy: Record, waves: Record) -> Record:
             f"current of {buoy.stream}. Give waves of the same days."
         )
     held = values[np.searchsorted(time, buoy.time, side="right") - 1]
-    columns = dict(zip(_WAVES, held.T, strict=True))
+    columns = dict(zip(GROUPS["waves"], held.T, strict=True))
     notes = tuple(dict.fromkeys(buoy.notes + waves.notes))
     return check_record(replace(buoy, values={**buoy.values, **columns}, flags={}, notes=notes))
