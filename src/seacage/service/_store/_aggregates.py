@@ -109,7 +109,7 @@ def renew_rested(session: AbstractSession, *, now_us: int) -> int:
     """Sum up some of the spans that have rested; how many."""
     before = now_us - RESTED // timedelta(microseconds=1)
     marked = session.rows(_MARKED + session.passing, (before, _AT_ONCE))
-    _renew(session, [(cage, stream, t) for cage, stream, t in marked])
+    _renew(session, marked)
     return len(marked)
 
 
@@ -160,16 +160,11 @@ def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: in
 
 def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
     # A late sample's mark may have crossed a seal on its way.
-    live = [
-        (cage, stream, t)
-        for cage, stream, t in spans
-        if t in _marks(session, cage, stream, t, t + 1)
-    ]
+    live = [span for span in spans if span[2] in _marks(session, *span, span[2] + 1)]
     fresh = [(*span[:2], *summary) for span in live for summary in _sum_up(session, span)]
     session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in live])
     session.each(_KEEP, [with_checksum("aggregate", *row) for row in fresh])
-    days = {(cage, stream, t - t % DAY_US) for cage, stream, t in live}
-    recount(session, "aggregate", days)
+    recount(session, "aggregate", live)
     session.each(_UNMARK, spans)
 
 

@@ -4,7 +4,7 @@ import json
 from collections.abc import Sequence
 
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._rows import DAY_US, Bounds, microseconds, moment_of
+from seacage.service._store._database._rows import Bounds, microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._tally import recount
 from seacage.twin import Action, AlarmEvent
@@ -24,13 +24,14 @@ def keep_alarms(
 ) -> None:
     """Replace the book of a cage and add lines to its journal."""
     session.rows(_KEEP_BOOK, with_checksum("alarm_book", cage, book))
-    keep_lines(session, [(cage, microseconds(one.t), line_of(one)) for one in journal])
+    keep_lines(session, cage, journal)
 
 
-def keep_lines(session: AbstractSession, lines: Sequence[tuple[str, int, str]]) -> None:
-    """Add lines to the journal: cage, time [us] and JSON."""
-    session.each(_KEEP_LINE, [with_checksum("journal", *one) for one in lines])
-    recount(session, "journal", {(cage, "", t - t % DAY_US) for cage, t, _ in lines})
+def keep_lines(session: AbstractSession, cage: str, journal: Sequence[AlarmEvent]) -> None:
+    """Add lines to the journal of a cage."""
+    lines = [(cage, microseconds(one.t), _line(one)) for one in journal]
+    session.each(_KEEP_LINE, [with_checksum("journal", *line) for line in lines])
+    recount(session, "journal", [(cage, "", t) for _, t, _ in lines])
 
 
 def alarm_book(session: AbstractSession, cage: str) -> str | None:
@@ -48,8 +49,7 @@ def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list
     return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
 
 
-def line_of(one: AlarmEvent) -> str:
-    """Write a line of the journal as JSON."""
+def _line(one: AlarmEvent) -> str:
     return json.dumps({key: getattr(one, key) for key in _KEYS})
 
 

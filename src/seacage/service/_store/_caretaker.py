@@ -10,7 +10,6 @@ from pathlib import Path
 import structlog
 
 from seacage.service._store._aggregates import WIDEST_US
-from seacage.service._store._database._rows import DAY_US
 from seacage.service._store._database._session import (
     AbstractDatabase,
     AbstractSession,
@@ -122,18 +121,14 @@ def put_back(session: AbstractSession, found: Sequence[Found]) -> None:
         rows = [row for _, row in group]
         if table == "journal":
             session.each(_PUT_LINE, [(*row, *row[:3]) for row in rows])
-            recount(session, table, {(row[0], "", _day(row[1])) for row in rows})
+            recount(session, table, [(row[0], "", row[1]) for row in rows])
             continue
         session.each(_PUT.format(table=table, places=", ".join("?" * len(rows[0]))), rows)
         if table == "aggregate":
-            recount(session, table, {(*row[:2], _day(row[4])) for row in rows})
+            recount(session, table, [(*row[:2], row[4]) for row in rows])
         if table == "sample":
-            recount(session, table, {(*row[:2], _day(row[2])) for row in rows})
+            recount(session, table, [row[:3] for row in rows])
             # Where the writer has summed up without them it has to do so again.
             spans = {(*row[:2], row[2] - row[2] % WIDEST_US) for row in rows}
             again = {one for one in spans if session.rows(_SUMMED, (*one, one[2] + WIDEST_US))}
             mark(session, again, time.time_ns() // 1000)
-
-
-def _day(t: int) -> int:
-    return t - t % DAY_US

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from seacage.service._store._alarms import keep_lines, line_of
+from seacage.service._store._alarms import keep_lines
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
@@ -51,7 +51,7 @@ def begin_damage(
     """Have lines' damage counted from a time on, and say in the journal why; both or neither."""
     rows = [with_checksum("damage_begin", cage, line, microseconds(t)) for line in lines]
     session.each(_BEGIN, rows)
-    keep_lines(session, [(cage, microseconds(one.t), line_of(one)) for one in journal])
+    keep_lines(session, cage, journal)
 
 
 def cut_begins(session: AbstractSession, cage: str, after: datetime) -> None:

@@ -65,7 +65,7 @@ def seal(session: AbstractSession, cage: str, stream: str, day: int) -> None:
 def delete(session: AbstractSession, cage: str, rows: Sequence[SampleRow]) -> None:
     """Delete the samples that were read as these rows."""
     session.each(_DELETE, [(cage, *row[:5]) for row in rows])
-    recount(session, "sample", {(cage, row[0], row[1] - row[1] % DAY_US) for row in rows})
+    recount(session, "sample", [(cage, row[0], row[1]) for row in rows])
 
 
 def _next_day(session: AbstractSession, cage: str, stream: str, start: int) -> int | None:

@@ -25,12 +25,12 @@ def count_new(session: AbstractSession, rows: Iterable[tuple[str, str, int]]) ->
     session.each(_ADD, [(one[0], "sample", *one[1:], n) for one, n in sorted(days.items())])
 
 
-def recount(session: AbstractSession, kind: str, days: Iterable[Day]) -> None:
-    """Count the rows of days again, after some were replaced or deleted."""
-    for day in sorted(days):
-        rows, values = _rows_of(kind, day)
+def recount(session: AbstractSession, kind: str, rows: Iterable[tuple[str, str, int]]) -> None:
+    """Count the rows of days again, after some were replaced or deleted; as ``count_new``."""
+    for day in sorted({(cage, stream, t - t % DAY_US) for cage, stream, t in rows}):
+        where, values = _rows_of(kind, day)
         of = (day[0], kind, *day[1:])
-        session.rows(_NOW.format(kind=kind, rows=rows), (*of, *values))
+        session.rows(_NOW.format(kind=kind, rows=where), (*of, *values))
         session.rows(_EMPTY, of)
 
 
