@@ -20,19 +20,14 @@ class Quarantine:
     Logs say the first of a burst and how many followed, for whoever sends nonsense should not
     fill the disk with it.
 
-    ``path``: of the file; None counts and logs only. ``most``: of the file [bytes]; beyond, it
-    becomes the file before and a new one begins.
+    ``path``: of the file. ``most``: of the file [bytes]; beyond, it becomes the file before and a
+    new one begins. ``count``: how many were set aside since the service began.
     """
 
-    def __init__(self, path: Path | None, *, most: int = 4 << 20) -> None:
+    def __init__(self, path: Path, *, most: int = 4 << 20) -> None:
         self._path, self._most = path, most
-        self._count = self._unsaid = 0
+        self.count = self._unsaid = 0
         self._said = float("-inf")
-
-    @property
-    def count(self) -> int:
-        """How many were set aside since the service began."""
-        return self._count
 
     def put(
         self, origin: str, payload: bytes, reason: str, *, now: datetime, sync: bool = False
@@ -43,10 +38,8 @@ class Quarantine:
         ``payload``, ``reason``, ``now``: what, why and when.
         ``sync``: wait until this and all before it are on disk.
         """
-        self._count += 1
+        self.count += 1
         self._say(origin, reason)
-        if self._path is None:
-            return False
         line = {"t": now.isoformat(), "from": origin[:_SHOWN], "reason": reason[:_SHOWN]}
         line |= {"bytes": len(payload), "payload": payload[:_SHOWN].decode("utf-8", "replace")}
         try:
