@@ -141,11 +141,7 @@ def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> lis
     loads, capacity = answer.line, twin.models.lines.capacity / 1e3
     mean, std, largest = (one.mean[0] / 1e3 for one in (loads.mean, loads.std, loads.maximum_3h))
     spread = np.where(np.isnan(std), loads.mean.std[0] / 1e3, np.nan)
-    damage = (
-        np.full(len(capacity), np.nan)
-        if loads.damage_per_year is None
-        else loads.damage_per_year[0]
-    )
+    yearly = loads.damage_per_year
     known = answer.line_in_domain[0]
     lower, upper = (np.where(known, one[0], np.nan) / 1e3 for one in answer.maximum_interval())
     return [
@@ -160,7 +156,7 @@ def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> lis
                 mean=_number(largest[k]), lower=_number(lower[k]), upper=_number(upper[k])
             ),
             utilisation=_number(largest[k] / capacity[k], 4),
-            damage_per_year=_number(damage[k], 9),
+            damage_per_year=_number(None if yearly is None else yearly[0, k], 9),
             **(asdict(counted[name]) if name in counted else {}),
         )
         for k, name in enumerate(answer.line_names)

@@ -23,11 +23,11 @@ _MOST = 1_000_000  # samples of a buoy in a day
 class LineDamage:
     """Damage of a line since its counter began."""
 
-    damage: float  # share of the line's life [-]
+    damage: float = 0.0  # share of the line's life [-]
     damage_since: datetime
     # Time with an answer, and without, which is never filled [h]
-    damage_valid_h: float
-    damage_missing_h: float
+    damage_valid_h: float = 0.0
+    damage_missing_h: float = 0.0
 
 
 class DamageCounter:
@@ -46,20 +46,17 @@ class DamageCounter:
         )
         self._columns = [lines.names.index(line) for line in self.lines]
         self._known: dict[bytes, Float[np.ndarray, " line"]] = {}
-        self._running: tuple[datetime, list[Stretch]] | None = None
+        self._running: tuple[datetime, list[Stretch]] | None
         # An hour, when the lines' counts began, and their sums up to that hour
-        self._summed: tuple[datetime, Mapping[str, datetime], Mapping[str, LineDamage]] | None = (
-            None
-        )
+        self._summed: tuple[datetime, Mapping[str, datetime], Mapping[str, LineDamage]] | None
         self.load()
 
     def load(self) -> None:
         """Read what is kept."""
         rows, begins = self._store.line_damage(self._name) if self.lines else ([], [])
-        self._rows = {one.t: one for one in rows}
-        self._summed = None
-        self._begins = begins
-        self._running, self._again = None, True
+        self._rows, self._begins = {one.t: one for one in rows}, begins
+        self._summed = self._running = None
+        self._again = True
 
     def advance(self, now: datetime, arrived: Sequence[datetime] = ()) -> None:
         """Count to the last whole minute, of hours not counted yet a day's at most.
@@ -140,7 +137,10 @@ class DamageCounter:
         """Sums up to an hour, which stay until another is asked for or counted: they grow long."""
         if self._summed is None or self._summed[:2] != (hour, begins):
             rows = [one for at, one in self._rows.items() if at < hour]
-            sums = {line: _add(_zero(begin), line, rows) for line, begin in begins.items()}
+            sums = {
+                line: _add(LineDamage(damage_since=begin), line, rows)
+                for line, begin in begins.items()
+            }
             self._summed = hour, begins, sums
         return self._summed[2]
 
@@ -191,10 +191,6 @@ class DamageCounter:
                 )
             )
         return rows
-
-
-def _zero(begin: datetime) -> LineDamage:
-    return LineDamage(damage=0.0, damage_since=begin, damage_valid_h=0.0, damage_missing_h=0.0)
 
 
 def _add(before: LineDamage, line: str, rows: Sequence[Stretch]) -> LineDamage:

@@ -213,11 +213,8 @@ class LiveTwin:
                 (self._reinstating, self._store.reinstate),
             ):
                 for step, stream in list(tasks):
-                    counts = (
-                        change(self._name, stream, clock=step.now, now=now).result()
-                        for _ in range(_CHUNKS)
-                    )
-                    for count in counts:
+                    for _ in range(_CHUNKS):
+                        count = change(self._name, stream, clock=step.now, now=now).result()
                         changed += count
                         if not count:
                             tasks.remove((step, stream))

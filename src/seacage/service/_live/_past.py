@@ -90,22 +90,12 @@ class Past:
         twin, begin = self.twin, until - ADAPTATION_BLOCK
         # With those a little ahead: they are there already, and govern when their time comes.
         end = at + timedelta(seconds=twin.timeouts.future_s) + _INSTANT
-        samples = list[Sample]()
+        read = partial(self.store.samples, self.cage, newest=True, withdrawn=False, known_at=at)
+        samples = self.store.newest_of_each(self.cage, twin.buoy, at=begin - _INSTANT)
         for stream in streams_of(twin):
-            read = partial(
-                self.store.samples,
-                self.cage,
-                stream=stream,
-                newest=True,
-                withdrawn=False,
-                known_at=at,
-            )
-            samples += (
-                self.store.newest_of_each(self.cage, stream, at=begin - _INSTANT)
-                if stream == twin.buoy
-                else read(end=begin, limit=1)
-            )
-            samples += read(start=begin, end=end, limit=_MOST)
+            if stream != twin.buoy:
+                samples += read(stream=stream, end=begin, limit=1)
+            samples += read(stream=stream, start=begin, end=end, limit=_MOST)
         state, _ = twin.receive(self._start_state(kept, until), samples, at)
         return replace(state, amendments=self.amendments_at(at))
 
