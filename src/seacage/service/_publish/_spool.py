@@ -17,6 +17,7 @@ from seacage.records import Sample
 from seacage.service._mqtt._messages import Settled, sample_fields
 from seacage.service._quarantine import Quarantine
 from seacage.service._small_files import keep_private
+from seacage.service._store._database._pool import close_on_error
 from seacage.service._store._database._rows import microseconds
 
 _NO_SEQ = -1
@@ -226,7 +227,7 @@ class Spool:
 
 def _open(path: Path) -> sqlite3.Connection:
     connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
-    try:
+    with close_on_error(connection):
         connection.text_factory = partial(str, encoding="utf-8", errors="replace")
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")
         connection.execute("PRAGMA journal_mode = WAL")
@@ -234,9 +235,6 @@ def _open(path: Path) -> sqlite3.Connection:
         connection.executescript(
             files("seacage.service._publish").joinpath("spool.sql").read_text("utf-8")
         )
-    except sqlite3.Error:
-        connection.close()
-        raise
     return connection
 
 

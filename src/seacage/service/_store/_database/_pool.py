@@ -15,6 +15,16 @@ C = TypeVar("C", bound=_Closable)
 _MOST = 8  # opening one costs more than a query, and a server has no end of them
 
 
+@contextmanager
+def close_on_error(connection: _Closable) -> Generator[None]:
+    """Close a connection where the block fails."""
+    try:
+        yield
+    except BaseException:
+        connection.close()
+        raise
+
+
 class Pool(Generic[C]):
     """So many connections at most, each as ``opened`` opens it; who finds none free waits."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import Damage, checksum
-from seacage.service._store._database._pool import Pool
+from seacage.service._store._database._pool import Pool, close_on_error
 from seacage.service._store._database._rows import Row, microseconds, moment_of
 from seacage.service._store._database._schema import tables, upgrade
 
@@ -133,7 +133,7 @@ class PostgresDatabase(_session.AbstractDatabase):
             )
             self._claimed: set[str] = set()
             self._writer = self._connect()
-            with self._close_on_error(self._writer):
+            with close_on_error(self._writer):
                 self._partitions = self._make_tables()
         self._readers = Pool(self._reader)
         self._tried = 0.0
@@ -210,7 +210,7 @@ class PostgresDatabase(_session.AbstractDatabase):
         time.sleep(max(0.0, self._tried + _AGAIN_S - time.monotonic()))
         self._tried = time.monotonic()
         connection = self._connect()
-        with self._close_on_error(connection):
+        with close_on_error(connection):
             session = PostgresSession(connection, self)
             gone = [cage for cage in sorted(self._claimed) if not self.claim(session, cage)]
             if gone:
@@ -224,19 +224,11 @@ class PostgresDatabase(_session.AbstractDatabase):
         connection = self._psycopg.connect(
             self._url, autocommit=True, connect_timeout=_PATIENCE_S, application_name="seacage"
         )
-        with self._close_on_error(connection):
+        with close_on_error(connection):
             # Whatever the server's default: an acknowledged sample is on disk.
             connection.execute("SET synchronous_commit = on")
             connection.execute(_KEEPALIVE)
         return connection
-
-    @contextmanager
-    def _close_on_error(self, connection: "Connection[tuple[Any, ...]]") -> Generator[None]:
-        try:
-            yield
-        except BaseException:
-            connection.close()
-            raise
 
     def _reader(self) -> "Connection[tuple[Any, ...]]":
         connection = self._connect()

@@ -24,15 +24,11 @@ def upgrade(words: Mapping[str, str], without: Iterable[str]) -> list[str]:
     ``words``: the database's. ``without``: tables that there are without a checksum, in any order.
     """
     old = CHECKED.keys() & set(without)
+    if not old:
+        return []
     column = f"crc {words['integer']} DEFAULT {UNVERIFIED}"
-    added = [f"ALTER TABLE {name} ADD COLUMN {column}" for name in sorted(old)]
-    return added + (_first_counts() if old else [])
-
-
-def _first_counts() -> list[str]:
-    """Statements that count what a store of 0.1.0 holds."""
     day = f"t - ((t % {DAY_US}) + {DAY_US}) % {DAY_US}"
-    return [
+    return [f"ALTER TABLE {name} ADD COLUMN {column}" for name in sorted(old)] + [
         _FIRST.format(kind=kind, day=day, stream="''" if kind == "journal" else "stream")
         + f"1, 3, {day}"
         for kind in _KINDS

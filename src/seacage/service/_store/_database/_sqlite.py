@@ -13,7 +13,7 @@ from typing import TextIO
 from seacage.service._small_files import keep_private
 from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Damage, checksum
-from seacage.service._store._database._pool import Pool
+from seacage.service._store._database._pool import Pool, close_on_error
 from seacage.service._store._database._reserve import Reserve
 from seacage.service._store._database._rows import Row
 from seacage.service._store._database._schema import tables, upgrade
@@ -120,8 +120,7 @@ class SqliteDatabase(_session.AbstractDatabase):
             if not one.with_name(one.name + ".copied").exists()
         ]
         try:
-            with _translate_errors(path, "does not open as the store of samples"):
-                self._writer = _open(path)
+            self._writer = _open(path)
         except _session.DamageError as error:
             self._begin_anew(error)
 
@@ -182,8 +181,7 @@ class SqliteDatabase(_session.AbstractDatabase):
 
     def _begin_anew(self, error: _session.DamageError) -> None:
         aside = _move_aside(self._path)
-        with _translate_errors(self._path, "does not open as the store of samples"):
-            self._writer = _open(self._path)
+        self._writer = _open(self._path)
         self.round += 1
         self.damage.clear()
         self.damaged.append(aside)
@@ -225,25 +223,27 @@ def _reading(path: Path) -> sqlite3.Connection:
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    keep_private(path)
-    _check_header(path)
-    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
-    try:
-        connection.text_factory = _text
-        connection.execute("PRAGMA journal_mode = WAL")
-        connection.execute("PRAGMA synchronous = FULL")
-        connection.execute("PRAGMA secure_delete = ON")  # what was deleted is never salvaged
-        _look_through(connection)
-        # Where there is nothing to make nothing is written: a full disk must not keep it shut.
+    with _translate_errors(path, "does not open as the store of samples"):
+        keep_private(path)
+        _check_header(path)
+        connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+        with close_on_error(connection):
+            _prepare(connection, path)
+        return connection
+
+
+def _prepare(connection: sqlite3.Connection, path: Path) -> None:
+    connection.text_factory = _text
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
+    connection.execute("PRAGMA secure_delete = ON")  # what was deleted is never salvaged
+    _look_through(connection)
+    # Where there is nothing to make nothing is written: a full disk must not keep it shut.
+    if _version(connection, path) < _VERSION:
+        connection.execute("BEGIN IMMEDIATE")
         if _version(connection, path) < _VERSION:
-            connection.execute("BEGIN IMMEDIATE")
-            if _version(connection, path) < _VERSION:
-                _make_tables(connection)
-            connection.execute("COMMIT")
-    except BaseException:
-        connection.close()
-        raise
-    return connection
+            _make_tables(connection)
+        connection.execute("COMMIT")
 
 
 def _check_header(path: Path) -> None:
