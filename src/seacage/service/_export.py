@@ -292,11 +292,10 @@ def _interval_variables(
     name: str, dim: str, mean: Table, interval: tuple[Table, Table] | None, columns: Any
 ) -> dict[str, Any]:
     unit, scale = ("m", 1.0) if dim == "depth_sensor" else ("kN", 1e-3)
-    lower, upper = interval or (np.full_like(mean, np.nan),) * 2
-    kinds = {"": (mean, "mean"), "_lower": (lower, "95 %, lower"), "_upper": (upper, "95 %, upper")}
+    tables = (mean, *(interval or (np.full_like(mean, np.nan),) * 2))
     return {
         f"{name}{end}": _variable(f"time {dim}", scale * values[:, columns], unit, long_name)
-        for end, (values, long_name) in kinds.items()
+        for (end, long_name), values in zip(_ENDS.items(), tables, strict=True)
     }
 
 
