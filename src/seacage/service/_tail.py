@@ -66,10 +66,9 @@ class Tail:
         Raises OSError: the file is there and cannot be read.
         Raises RecordError: its header is not that of its map, so no row can be read.
         """
-        if self._file is None and not self._open():
+        file = self._file or self._open()
+        if file is None:
             return ()
-        file = self._file
-        assert file is not None
         if self._rewritten(file):
             self._begin(file)
         samples = self._rows(file)
@@ -84,22 +83,17 @@ class Tail:
             self._file.close()
             self._file = None
 
-    def _open(self) -> bool:
+    def _open(self) -> BinaryIO | None:
         if self.path.exists():  # a pipe would hold the opening for ever
             check_file(self.path, most=sys.maxsize, refusal=RecordError)
         try:
             self._file = self.path.open("rb")
         except FileNotFoundError:
-            return False
-        if not self._header and self.place.line:
-            self._read_header(self._file)
-        return True
-
-    def _read_header(self, file: BinaryIO) -> None:
-        """Read the header again, to go on below it."""
-        file.seek(0)
-        lines = [file.readline() for _ in range(self._skip_lines + 1)]
-        self._header = self._text(lines[-1])
+            return None
+        if not self._header and self.place.line:  # to go on below it
+            lines = [self._file.readline() for _ in range(self._skip_lines + 1)]
+            self._header = self._text(lines[-1])
+        return self._file
 
     def _rewritten(self, file: BinaryIO) -> bool:
         if os.fstat(file.fileno()).st_size < self.place.offset:
