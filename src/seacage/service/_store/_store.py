@@ -151,25 +151,18 @@ class Store:
         self,
         cage: str,
         *,
-        stream: str | None = None,
+        stream: str | None = None,  # all where None
+        # Bounds in the source's time; open where None
         start: datetime | None = None,
         end: datetime | None = None,
-        limit: int,
-        newest: bool = False,
-        withdrawn: bool = True,
+        limit: int,  # at most so many
+        newest: bool = False,  # of more than ``limit`` the last rather than the first
+        withdrawn: bool = True,  # those too that are ahead of a clock that has stepped back
+        # Give the flags that the samples until then had shown; None for those of now. What is
+        # archived has those of now.
         known_at: datetime | None = None,
     ) -> list[Sample]:
-        """Read samples in time order, start <= t < end.
-
-        ``cage`` and ``stream``: of which; all streams where None.
-        ``start`` and ``end``: bounds in the source's time; open where None.
-        ``limit``: at most so many.
-        ``newest``: of more than ``limit`` the last rather than the first.
-        ``withdrawn``: those too that were withdrawn, as they are ahead of a clock that has stepped
-        back.
-        ``known_at``: give the flags that the samples until then had shown; None for those of now.
-        What is archived has those of now.
-        """
+        """Read samples in time order, start <= t < end."""
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         found = self._read(
             "samples",
@@ -199,21 +192,17 @@ class Store:
         cage: str,
         *,
         stream: str,
-        key: str,
-        width_s: int,
+        key: str,  # of the quantity
+        width_s: int,  # 60 or 600 [s]
+        # Bounds of the spans' begins; open where None
         start: datetime | None = None,
         end: datetime | None = None,
-        limit: int,
+        limit: int,  # at most so many, the first
     ) -> list[AggregateOut]:
         """Read what the usable readings of each span were, of spans that begin in start <= t < end.
 
         A current has no mean direction: it is aggregated as ``current_east_m_s`` and
         ``current_north_m_s``. Aggregates outlive the samples that they were made from.
-
-        ``cage``, ``stream``, ``key``: of which quantity.
-        ``width_s``: 60 or 600 [s].
-        ``start`` and ``end``: bounds of the spans' begins; open where None.
-        ``limit``: at most so many, the first.
 
         Raises InputError: a direction, no quantity, or a width that is not kept.
         """
