@@ -21,26 +21,21 @@ class FileTail:
     After a restart it reads on where it stopped: the place is written once the samples are on
     disk, so some may be read twice, and are known again by stream and time.
 
-    ``path`` and ``stream``: see ``Tail``.
-    ``cage``: whose samples they are.
-    ``quarantine``: where rows that cannot be read are set aside.
-    ``kept``: file of the place; None reads from the beginning after each restart.
-    ``every_s``: how often to look [s].
     ``fault``: why the file cannot be read; None while it can.
     """
 
     def __init__(
         self,
-        path: Path,
-        cage: LiveCage,
+        path: Path,  # see ``Tail``
+        cage: LiveCage,  # whose samples they are
         *,
-        quarantine: Quarantine,
-        stream: str = "buoy-1",
-        kept: Path | None = None,
-        every_s: float = 1.0,
+        quarantine: Quarantine,  # where rows that cannot be read are set aside
+        stream: str = "buoy-1",  # see ``Tail``
+        kept: Path,  # file of the place
+        every_s: float = 1.0,  # how often to look [s]
     ) -> None:
         self._cage, self._quarantine, self._kept, self._every_s = cage, quarantine, kept, every_s
-        text = kept.read_text("utf-8", "replace") if kept and kept.exists() else str(TailPosition())
+        text = kept.read_text("utf-8", "replace") if kept.exists() else str(TailPosition())
         place = TailPosition.parse(text)
         if str(place) != text:
             _log.warning("place cannot be read, so the file is read anew", path=str(kept))
@@ -65,7 +60,7 @@ class FileTail:
             if samples:
                 await self._cage.take(samples)
             if self._tail.place != before:
-                await asyncio.to_thread(self._keep)
+                await asyncio.to_thread(write_small, self._kept, str(self._tail.place))
         except (OSError, RecordError, StoreError) as error:
             if self.fault is None:
                 _log.error("file waits", path=str(self._tail.path), reason=str(error))
@@ -74,10 +69,6 @@ class FileTail:
             return False
         self.fault = None
         return True
-
-    def _keep(self) -> None:
-        if self._kept is not None:
-            write_small(self._kept, str(self._tail.place))
 
     def _refuse(self, where: str, row: bytes, reason: str) -> None:
         self._quarantine.put(where, row, reason, now=self._cage.clock.now())
