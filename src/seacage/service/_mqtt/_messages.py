@@ -6,28 +6,24 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import Field, TypeAdapter, ValidationError
 
 from seacage.conventions import InputError
 from seacage.records import Sample
-from seacage.service._schemas._base import Time
+from seacage.service._schemas._base import AbstractRequest, Time
 from seacage.service._schemas._samples import BATCH_LIMIT, SampleIn, read_samples
 
 LARGEST = 1 << 18  # of a message [bytes]; a longer one is not read
 
 
-class _Settled(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
+class _Settled(AbstractRequest):
     t: Annotated[Time, Field(strict=False)]
     seq: int | None = None
     rejected: str | None = None
     retry: bool = False
 
 
-class _Observed(BaseModel):
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
+class _Observed(AbstractRequest):
     t: Annotated[Time, Field(strict=False)]
     seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
     values: Annotated[dict[str, object], Field(min_length=1, max_length=16)]
