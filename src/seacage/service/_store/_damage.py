@@ -36,9 +36,8 @@ def keep_damage(
 ) -> None:
     """Keep the stretches of a span in place of those that were there."""
     session.rows(_CUT, (cage, *map(microseconds, span)))
-    sums = [json.dumps([one.damage, one.valid, one.missing]) for one in rows]
-    values = zip((microseconds(one.t) for one in rows), sums, strict=True)
-    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in values])
+    sums = [(microseconds(row.t), json.dumps([row.damage, row.valid, row.missing])) for row in rows]
+    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in sums])
 
 
 def begin_damage(

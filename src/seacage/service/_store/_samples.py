@@ -98,8 +98,7 @@ def append_all(
             for key, sample in result.fresh.items()
         }
         rows += [row for key, row in fresh.items() if key not in result.again]
-        again = [fresh[key] for key in result.again if key in fresh]
-        _replace(session, again)
+        _replace(session, [fresh[key] for key in result.again if key in fresh])
     inserted = dict(zip((row[:4] for row in rows), session.insert(rows), strict=True))
     count_new(session, (row[:3] for row in rows if inserted[row[:4]]))
     # What the disk has changed is not known any more: the sample takes its place.
@@ -152,12 +151,11 @@ def _times_changed(checked: Mapping[Of, Checked]) -> set[tuple[str, str, int]]:
 
 
 def _outcome(work: Append, checked: Mapping[Of, Checked], *, late: bool) -> Stored:
-    new, samples, streams = list[bool](), list[Sample](), dict[tuple[str, str], None]()
+    new, samples = list[bool](), list[Sample]()
+    streams = dict.fromkeys((work.cage, sample.stream) for sample in work.samples)
     for sample in work.samples:
-        of = work.cage, sample.stream
-        streams[of] = None
         # Of two that ask for the same sample the first gets it, as it is taken out here.
-        fresh = checked[of].fresh.pop(_rows.key_of(sample), None)
+        fresh = checked[work.cage, sample.stream].fresh.pop(_rows.key_of(sample), None)
         new.append(fresh is not None)
         samples.append(sample if fresh is None else fresh)
     amendments = tuple(one for of in streams for one in checked[of].amendments)
@@ -219,10 +217,8 @@ def samples_at(
     session: AbstractSession, cage: str, stream: str, keys: Iterable[Key], *, known_at: datetime
 ) -> list[Sample]:
     """Read some samples of a stream in time order, with the flags known at a time."""
-    found = list[Sample]()
-    for key in sorted(keys):
-        found += _read(session, cage, _one(session, (cage, stream, *key)), known_at)
-    return found
+    rows = [row for key in sorted(keys) for row in _one(session, (cage, stream, *key))]
+    return _read(session, cage, rows, known_at)
 
 
 def samples_between(
@@ -307,10 +303,8 @@ def mark(session: AbstractSession, changed: set[tuple[str, str, int]], touched: 
     """Mark the ten minutes of samples that have changed, by cage, stream and time [us]."""
     # In order, so that two processes never wait for each other.
     spans = sorted({(cage, stream, t - t % WIDEST_US) for cage, stream, t in changed})
-    session.each(
-        _MARK,
-        [
-            (*with_checksum("mark", *span, touched), *span[:2], span[2] - span[2] % _rows.DAY_US)
-            for span in spans
-        ],
-    )
+    rows = [
+        (*with_checksum("mark", *span, touched), *span[:2], span[2] - span[2] % _rows.DAY_US)
+        for span in spans
+    ]
+    session.each(_MARK, rows)

@@ -67,16 +67,15 @@ def _records(page: Callable[[int], bytes], number: int) -> Iterator[tuple[Any, .
             (at,) = unpack_from(">H", content, pointers + 2 * k)
             size, at = _varint(content, at + 4 if kind == 2 else at)
             at = _varint(content, at)[1] if kind == 13 else at
-            yield _decode(_payload(page, content, at, size, PAGE - 35 if kind == 13 else None))
+            yield _decode(
+                _payload(page, content, at, size, PAGE - 35 if kind == 13 else _USABLE_INDEX)
+            )
         except (IndexError, ValueError, KeyError, StructError):
             continue
 
 
-def _payload(
-    page: Callable[[int], bytes], content: bytes, at: int, size: int, most: int | None
-) -> bytes:
+def _payload(page: Callable[[int], bytes], content: bytes, at: int, size: int, most: int) -> bytes:
     """Put together what lies in the page and in those that it goes over into."""
-    most = most or _USABLE_INDEX
     local = size
     if size > most:
         local = _LEAST + (size - _LEAST) % (PAGE - 4)
