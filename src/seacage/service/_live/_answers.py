@@ -18,19 +18,9 @@ from seacage.records import Record, Sample
 from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._live._damage import LineDamage
 from seacage.service._schemas import _cages as schemas
+from seacage.service._schemas import _state as states
 from seacage.service._schemas._history import History, Measured, Series
 from seacage.service._schemas._samples import SampleOut
-from seacage.service._schemas._state import (
-    Amended,
-    BridleState,
-    Interval,
-    LineState,
-    SensorState,
-    Shape,
-    ShapeState,
-    State,
-    Water,
-)
 from seacage.twin import (
     NO_PARTED_LINES,
     Answer,
@@ -55,10 +45,10 @@ def state_of(
     memory: TwinState,  # what the twin remembers of its streams
     *,
     damage: Mapping[str, LineDamage] = MappingProxyType({}),  # of the lines, as far as counted
-) -> State:
+) -> states.State:
     """Say what a cage does at one time."""
     answer = answered.answer
-    return State(
+    return states.State(
         cage=name,
         t=answered.t,
         age_s=_number(answered.input_age_s),
@@ -77,13 +67,13 @@ def state_of(
         volume_fraction=_number(answer.volume_fraction[0], 4),
         silent=sorted(memory.silent),
         amended=[
-            Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
+            states.Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
             for one in memory.amended
         ],
     )
 
 
-def loads_of(state: State) -> Iterator[tuple[float, str, str]]:
+def loads_of(state: states.State) -> Iterator[tuple[float, str, str]]:
     """Each bridle's loads as far as they are known: share of capacity [-], bridle and source."""
     distrusted = {one.id for one in state.alarms if one.active}
     for one in state.bridles:
@@ -94,7 +84,7 @@ def loads_of(state: State) -> Iterator[tuple[float, str, str]]:
             yield share, one.name, f"measured by {by}"
 
 
-def summary_of(name: str, state: State) -> schemas.CageSummary:
+def summary_of(name: str, state: states.State) -> schemas.CageSummary:
     """Say in one line how a cage is."""
     waiting = [alarm for alarm in state.alarms if not alarm.shelved]
     worst = max(waiting, key=lambda alarm: (alarm.active, alarm.severity), default=None)
@@ -105,20 +95,20 @@ def summary_of(name: str, state: State) -> schemas.CageSummary:
         "worst_severity": worst.severity if worst else None,
         "worst_title": worst.title if worst else None,
     }
-    water = dict(state.water or dict.fromkeys(Water.model_fields))
+    water = dict(state.water or dict.fromkeys(states.Water.model_fields))
     return schemas.CageSummary.model_validate({**dict(state), **water, **about})
 
 
-def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[BridleState]:
+def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[states.BridleState]:
     tension, (lower, upper) = answer.bridle_tension.mean[0], answer.bridle_interval()
     read = [measured.get(k, math.nan) for k in range(len(cage.bridle_names))]
     shackles = {one.bridle: one.name for one in cage.shackles}
     return [
-        BridleState(
+        states.BridleState(
             name=bridle,
             level=int(answer.bridle_level[k]),
             in_domain=bool(answer.bridle_in_domain[0, k]),
-            tension_kn=Interval(
+            tension_kn=states.Interval(
                 mean=_number(tension[k] / 1e3),
                 lower=_number(lower[0, k] / 1e3),
                 upper=_number(upper[0, k] / 1e3),
@@ -134,7 +124,7 @@ def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[
     ]
 
 
-def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> list[LineState]:
+def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> list[states.LineState]:
     """Say how all lines are loaded in waves; nothing where the sea was never learned."""
     if answer.line is None:
         return []
@@ -145,14 +135,14 @@ def _lines(twin: Twin, answer: Answer, counted: Mapping[str, LineDamage]) -> lis
     known = answer.line_in_domain[0]
     lower, upper = (np.where(known, one[0], np.nan) / 1e3 for one in answer.maximum_interval())
     return [
-        LineState(
+        states.LineState(
             name=name,
             kind=answer.line_kinds[k],
             level=int(answer.line_level[k]),
             mean_kn=_number(mean[k]),
             mean_spread_kn=_number(spread[k]),
             std_kn=_number(std[k]),
-            maximum_3h_kn=Interval(
+            maximum_3h_kn=states.Interval(
                 mean=_number(largest[k]), lower=_number(lower[k]), upper=_number(upper[k])
             ),
             utilisation=_number(largest[k] / capacity[k], 4),
@@ -218,8 +208,8 @@ def _badness(line: schemas.PartedLine) -> tuple[bool, float, float]:
 
 def _sensors(
     answer: Answer, memory: TwinState, now: datetime, silent_after_s: float
-) -> list[SensorState]:
-    states = list[SensorState]()
+) -> list[states.SensorState]:
+    found = list[states.SensorState]()
     depths = answer.depth_std_level.tolist()
     for column, one in enumerate(sensor_outputs(answer)):
         std = _number(answer.depth_std[0, column]) if column < len(depths) else None
@@ -227,8 +217,8 @@ def _sensors(
         measured = usable_value(sample) if sample else None
         age = (now - sample.t).total_seconds() if sample and measured is not None else None
         fresh = age is not None and age <= silent_after_s
-        states.append(
-            SensorState(
+        found.append(
+            states.SensorState(
                 name=one.name,
                 unit=one.unit,
                 level=one.level,
@@ -244,7 +234,7 @@ def _sensors(
                 measured_age_s=_number(age) if fresh else None,
             )
         )
-    return states
+    return found
 
 
 def usable_value(sample: Sample) -> float | None:
@@ -253,12 +243,12 @@ def usable_value(sample: Sample) -> float | None:
     return value if sample.flags[key] not in _UNUSABLE and math.isfinite(value) else None
 
 
-def shape_of(answered: Answered) -> Shape:
+def shape_of(answered: Answered) -> states.Shape:
     """Say where the net is at one time; nowhere without valid input."""
     answer, about = answered.answer, _shape_state(answered.answer)
     valid = bool(answer.valid[0])
     known = valid and about.interval_reason is None
-    return Shape(
+    return states.Shape(
         t=answered.t,
         valid=valid,
         node_position_m=answer.node_position[0].round(_DECIMALS).tolist() if valid else [],
@@ -267,8 +257,8 @@ def shape_of(answered: Answered) -> Shape:
     )
 
 
-def _shape_state(answer: Answer) -> ShapeState:
-    return ShapeState(
+def _shape_state(answer: Answer) -> states.ShapeState:
+    return states.ShapeState(
         level=answer.shape_level,
         in_domain=bool(answer.in_domain[0]),
         interval_reason=interval_reason(known=answer.shape_level > 1),
@@ -358,11 +348,11 @@ def sample_of(sample: Sample) -> SampleOut:
     return SampleOut.model_validate(sample)
 
 
-def _water(metocean: Metocean | None) -> Water | None:
+def _water(metocean: Metocean | None) -> states.Water | None:
     if metocean is None:
         return None
     velocity = metocean.current_velocity[0]
-    return Water(
+    return states.Water(
         current_speed_m_s=_number(float(np.hypot(*velocity))),
         current_to_deg=_number(float(compass(velocity)), 1),
         hs_m=_number(metocean.hs[0], 2),

@@ -10,12 +10,7 @@ from pathlib import Path
 import structlog
 
 from seacage.service._store._aggregates import WIDEST_US
-from seacage.service._store._database._session import (
-    AbstractDatabase,
-    AbstractSession,
-    Answer,
-    StoreError,
-)
+from seacage.service._store._database import _session
 from seacage.service._store._integrity._salvage import Found, intact_rows
 from seacage.service._store._integrity._tally import recount
 from seacage.service._store._integrity._verify import AT_ONCE, Read, verify
@@ -43,9 +38,9 @@ class Caretaker:
 
     def __init__(
         self,
-        database: AbstractDatabase,
+        database: _session.AbstractDatabase,
         writer: Writer,
-        read: Read[Answer],
+        read: Read[_session.Answer],
         look: Callable[[], object],  # done about every second
     ) -> None:
         self._database, self._writer, self._read, self._look = database, writer, read, look
@@ -79,7 +74,7 @@ class Caretaker:
                 elif self._cages and time.monotonic() >= due:
                     due = time.monotonic() + _EVERY_S
                     self._verify()
-            except (StoreError, OSError) as error:
+            except (_session.StoreError, OSError) as error:
                 _log.warning("the store is not looked after", reason=str(error))
                 due, pause = time.monotonic() + 10 * _LATER_S, _LATER_S
             self._stop.wait(pause)
@@ -115,7 +110,7 @@ class Caretaker:
         _log.info("salvaged", file=str(path), rows=copied)
 
 
-def put_back(session: AbstractSession, found: Sequence[Found]) -> None:
+def put_back(session: _session.AbstractSession, found: Sequence[Found]) -> None:
     """Insert rows as they were written, where there are none of their keys."""
     for table, group in groupby(sorted(found, key=lambda one: one[0]), key=lambda one: one[0]):
         rows = [row for _, row in group]
