@@ -198,8 +198,7 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
     quarantine = Quarantine(settings.data / "quarantine.jsonl")
     metrics.quarantined.set_function(lambda: float(quarantine.count))
     feeds += _tails(settings, cages, quarantine)
-    if settings.mqtt is not None:
-        mqtt = settings.mqtt
+    if (mqtt := settings.mqtt) is not None:
         feed = MqttFeed(
             **mqtt.model_dump(exclude={"client_id"}),
             site=settings.site,

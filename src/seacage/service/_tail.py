@@ -96,9 +96,8 @@ class Tail:
         return self._file
 
     def _rewritten(self, file: BinaryIO) -> bool:
-        if os.fstat(file.fileno()).st_size < self.place.offset:
-            return True
-        return self.place.head != self._hash(file, self.place.offset)
+        shorter = os.fstat(file.fileno()).st_size < self.place.offset
+        return shorter or self.place.head != self._hash(file, self.place.offset)
 
     def _begin(self, file: BinaryIO) -> None:
         _log.info("file begins anew", path=str(self.path))

@@ -170,10 +170,8 @@ class AlarmDesk:
 
     def _open_book(self) -> AlarmBook:
         kept = self._store.alarm_book(self._cage)
-        if kept is None:
-            return AlarmBook.new()
         try:
-            return AlarmBook.from_json(kept)
+            return AlarmBook.new() if kept is None else AlarmBook.from_json(kept)
         except InputError as error:
             self._lost = f"The alarms that were kept cannot be read; they begin anew ({error})"
             _log.error("alarms lost", cage=self._cage, reason=self._lost)

@@ -29,8 +29,7 @@ class Replay:
         """Feed the samples when their time has come; begin anew at the end, for ever."""
         while True:
             clock.restart(self.start)
-            backlog = self._merge(self.start - _LEAD, self.start)
-            await cage.begin(list(backlog))
+            await cage.begin(list(self._merge(self.start - _LEAD, self.start)))
             await self._feed(cage, clock)
 
     async def _feed(self, cage: LiveCage, clock: ReplayClock) -> None:
