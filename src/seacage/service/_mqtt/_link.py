@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol, runtime_checkable
 
 import structlog
@@ -127,9 +128,8 @@ class Link:
 
     async def _hold_connection(self) -> None:
         """Be connected until it ends, and raise why."""
-        connection = _Connection(self._broker.client(self._client_id, manual_ack=True))
-        self._connection = connection
-        client = connection.client
+        client = self._broker.client(self._client_id, manual_ack=True)
+        connection = self._connection = _Connection(client)
         client.on_message = self._on_message
         if self._will is not None:
             client.will_set(self._will.topic, self._will.gone, qos=1, retain=True)
@@ -189,16 +189,9 @@ class _Connection:
     async def open(self, broker: Broker, properties: Properties) -> None:
         """Reach the broker; its greeting comes later."""
         # Looking up a name and greeting in TLS block; what was queued meanwhile is written below.
-        opening = asyncio.ensure_future(
-            asyncio.to_thread(
-                self.client.connect,
-                broker.host,
-                broker.port,
-                KEEPALIVE_S,
-                clean_start=False,
-                properties=properties,
-            )
-        )
+        place = broker.host, broker.port, KEEPALIVE_S
+        connect = partial(self.client.connect, *place, clean_start=False, properties=properties)
+        opening = asyncio.ensure_future(asyncio.to_thread(connect))
         try:
             await asyncio.shield(opening)
         except asyncio.CancelledError:

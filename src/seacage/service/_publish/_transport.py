@@ -100,7 +100,6 @@ class MqttTransport:
                 raise InputError(f"The broker refuses this client: {self._refused}.")
             if not self._listening:
                 return self._take_settled()
-        waiting = {(one.stream, one.t, one.seq) for one in samples}
         by_stream: dict[str, list[Sample]] = {}
         for one in samples:
             by_stream.setdefault(one.stream, []).append(one)
@@ -108,7 +107,7 @@ class MqttTransport:
             topic = self._topics.samples(self._cage, stream)
             for first in range(0, len(of), _TOGETHER):
                 self._client.publish(topic, samples_text(of[first : first + _TOGETHER]), qos=1)
-        return self._await_outcomes(waiting)
+        return self._await_outcomes({(one.stream, one.t, one.seq) for one in samples})
 
     def close(self) -> None:
         """See ``Transport``."""
