@@ -132,15 +132,14 @@ def aggregates_between(
         spans.setdefault(row[0] - row[0] % WIDEST_US, []).append(row)
     found: list[Sequence[float]] = []
     for t in sorted(spans):
-        found += (
-            [
+        if t not in marked:
+            found += spans[t]
+        else:
+            found += (
                 row
                 for quantity, width, *row in _sum_up(session, (*of, t))
                 if (quantity, width) == (key, width_s) and first <= row[0] < last
-            ]
-            if t in marked
-            else spans[t]
-        )
+            )
         if len(found) >= bounds.limit:
             break
     return [

@@ -42,10 +42,8 @@ def alarm_book(session: AbstractSession, cage: str) -> str | None:
 
 def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list[AlarmEvent]:
     """Read lines in time order, as ``Store.journal`` says."""
-    order = _ORDERS[bounds.newest]
-    rows = session.intact(
-        "journal", _LINES + order, (cage, *bounds.us), (cage,), limit=bounds.limit
-    )
+    sql, values = _LINES + _ORDERS[bounds.newest], (cage, *bounds.us)
+    rows = session.intact("journal", sql, values, (cage,), limit=bounds.limit)
     return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
 
 

@@ -78,13 +78,12 @@ def retire_days(
 ) -> int:
     """Delete samples of days before a time [µs], archived first; how many."""
     days = read("sample", lambda session: list(days_before(session, cage, before)))
-    return sum(_retire_day(read, writer, archive, (cage, stream, day)) for stream, day in days)
+    return sum(_retire_day(read, writer, archive, cage, stream, day) for stream, day in days)
 
 
 def _retire_day(
-    read: Read[Any], writer: Writer, archive: Archive | None, of: tuple[str, str, int]
+    read: Read[Any], writer: Writer, archive: Archive | None, cage: str, stream: str, day: int
 ) -> int:
-    cage, stream, day = of
     rows = read("sample", lambda session: rows_of_day(session, cage, stream, day))
     pairs = list(readable(rows))
     if archive is not None:

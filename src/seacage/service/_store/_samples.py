@@ -237,13 +237,8 @@ def samples_between(
     if not withdrawn:
         sql, values = f"{sql} AND remarks NOT LIKE ?", (*values, f"%{AHEAD}%")
     order = "DESC" if bounds.newest else "ASC"
-    rows = session.intact(
-        "sample",
-        f"{sql} ORDER BY t {order}, stream {order}, seq {order} LIMIT ?",
-        values,
-        (cage,),
-        limit=bounds.limit,
-    )
+    sql += f" ORDER BY t {order}, stream {order}, seq {order} LIMIT ?"
+    rows = session.intact("sample", sql, values, (cage,), limit=bounds.limit)
     return _read(session, cage, reversed(rows) if bounds.newest else rows, known_at)
 
 
@@ -262,16 +257,12 @@ def latest_samples(
     """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
     until = _rows.microseconds(at) if at else _rows.Bounds().us[1]
     query = STREAMS + _LATEST + _NEWEST[session.lateral]
-    found = session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%"))
+    bounds = _rows.Bounds(end=at and at + _rows.MICROSECOND, limit=1, newest=True)
     samples = list[Sample]()
-    for row in found:
+    for row in session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%")):
         good = session.whole("sample", [row], (cage,))
         samples += _read(session, cage, good) or samples_between(
-            session,
-            cage,
-            _rows.Bounds(end=at and at + _rows.MICROSECOND, limit=1, newest=True),
-            stream=row[0],
-            withdrawn=False,
+            session, cage, bounds, stream=row[0], withdrawn=False
         )
     return {one.stream: one for one in samples}
 

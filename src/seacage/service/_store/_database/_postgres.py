@@ -128,9 +128,8 @@ class PostgresDatabase(_session.AbstractDatabase):
         with self._translate_errors("does not open as the store of samples"):
             # A URL may hold a password, and an error is read by many.
             parts = conninfo_to_dict(url)
-            self._place = (
-                f"{parts.get('dbname', 'its database')} on {parts.get('host', 'localhost')}"
-            )
+            name, host = parts.get("dbname", "its database"), parts.get("host", "localhost")
+            self._place = f"{name} on {host}"
             self._claimed: set[str] = set()
             self._writer = self._connect()
             with close_on_error(self._writer):
@@ -178,18 +177,15 @@ class PostgresDatabase(_session.AbstractDatabase):
     def part(self, months: Iterable[datetime]) -> None:
         """Make the partitions that these months lack."""
         wanted = {_partition(month): month for month in months}
-        missing = sorted(wanted.keys() - self._partitions)
+        missing = wanted.keys() - self._partitions
         if missing:
             # By a connection of its own: it is committed whether or not the samples are.
             with self._connect() as connection, connection.transaction():
                 connection.execute(_LOCK)
                 there = {name for (name,) in connection.execute(_PARTITIONS).fetchall()}
-                for name in missing:
-                    if name not in there:
-                        start, end = _bounds(wanted[name])
-                        connection.execute(
-                            _PARTITION.format(name=name, start=start, end=end).encode()
-                        )
+                for name in sorted(missing - there):
+                    start, end = _bounds(wanted[name])
+                    connection.execute(_PARTITION.format(name=name, start=start, end=end).encode())
             self._partitions |= wanted.keys()
 
     def _make_tables(self) -> set[str]:
