@@ -1,6 +1,6 @@
 """From settings and twins to a service: its store, cages, guard and feeds put together."""
 
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import Callable, Coroutine, Iterator, Mapping
 from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
@@ -211,13 +211,13 @@ def _feeds(settings: Settings, cages: Mapping[str, LiveCage], metrics: Metrics) 
     return feeds
 
 
-def _tails(settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quarantine) -> list[Feed]:
-    feeds = list[Feed]()
+def _tails(
+    settings: Settings, cages: Mapping[str, LiveCage], quarantine: Quarantine
+) -> Iterator[Feed]:
     for section in own_cages(settings):
         cage = cages[section.name or next(iter(cages))]  # a cage without a name is alone
         for number, tail in enumerate(section.tail, start=1):
             kept = settings.data / "tails" / f"{cage.name}-{number}.json"
             kept.parent.mkdir(parents=True, exist_ok=True)
             feed = FileTail(tail.path, cage, quarantine=quarantine, stream=tail.stream, kept=kept)
-            feeds.append(feed.run)
-    return feeds
+            yield feed.run

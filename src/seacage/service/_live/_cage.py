@@ -239,9 +239,8 @@ class LiveCage:
             self._metrics.clients.labels(self.name).dec()
 
     async def _store_samples(self, samples: Sequence[Sample]) -> Stored:
-        commit = self.store.append(
-            self.name, samples, ingested=self.clock.now(), limits=DEFAULT_LIMITS
-        )
+        now = self.clock.now()
+        commit = self.store.append(self.name, samples, ingested=now, limits=DEFAULT_LIMITS)
         loop = asyncio.get_running_loop()
 
         def queue(_: "Future[Stored]") -> None:

@@ -102,8 +102,7 @@ class DamageCounter:
         if not begins:
             return {}
         whole = self._whole_hours(hour, begins)
-        own = running is not None and running[0] == minute
-        rows = running[1] if running and own else self._stretches(hour, minute)
+        rows = running[1] if running and running[0] == minute else self._stretches(hour, minute)
         return {line: _add(whole[line], line, rows) for line in begins}
 
     def reset(self, line: str, *, who: str, why: str, now: datetime) -> "Future[None]":
