@@ -23,7 +23,14 @@ from seacage.surrogates._loads._load_ratio import LoadRatio, is_gain
 from seacage.surrogates._loads._loads import LoadCases, LoadPrediction, Loads
 from seacage.surrogates._loads._motion_gp import FittedMotionGP
 from seacage.surrogates._multifidelity._batch import BatchedLevels
-from seacage.surrogates._multifidelity._nargp import AR1, NARGP, FittedNARGP
+from seacage.surrogates._multifidelity._folds import Folds, log_density, pseudo_bma
+from seacage.surrogates._multifidelity._nargp import (
+    AR1,
+    NARGP,
+    FittedNARGP,
+    ModelAverage,
+    ModelName,
+)
 from seacage.surrogates._prediction import Prediction, Predicts
 from seacage.surrogates._saving import Fitted, decode, encode
 from seacage.surrogates._scores import (
@@ -63,6 +70,7 @@ __all__ = [
     "FittedPcaGP",
     "FittedResidual",
     "FittedShapeGP",
+    "Folds",
     "GaussianProcess",
     "LoadCases",
     "LoadChange",
@@ -70,6 +78,8 @@ __all__ = [
     "LoadPrediction",
     "LoadRatio",
     "Loads",
+    "ModelAverage",
+    "ModelName",
     "OverTime",
     "PcaGP",
     "Prediction",
@@ -90,9 +100,11 @@ __all__ = [
     "decode",
     "encode",
     "is_gain",
+    "log_density",
     "mae",
     "metocean_features",
     "mnll",
+    "pseudo_bma",
     "rmse",
     "sea_features",
     "skill",

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from seacage.conventions import InputError, read_packaged_table
-from seacage.surrogates import AR1, NARGP, GaussianProcess
+from seacage.surrogates import AR1, NARGP, GaussianProcess, ModelAverage
 
 OURS = "nargp"  # the method that the verdicts are about
 EMUKIT, SMT, HIGH_ONLY = "emukit-nargp", "smt-mfk", "high-only"  # those that it is held against
@@ -84,7 +84,7 @@ def _methods_of(kind: str) -> list[dict[str, Any]]:
 def _learners() -> tuple[Path, ...]:
     """The files of the surrogates that our methods reach, so that no other counts."""
     reached: dict[str, Path] = {}
-    ahead = {one.__module__ for one in (AR1, NARGP, GaussianProcess)}
+    ahead = {one.__module__ for one in (AR1, NARGP, GaussianProcess, ModelAverage)}
     while ahead:
         module = ahead.pop()
         reached[module] = _source(module)

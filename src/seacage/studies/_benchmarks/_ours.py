@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from seacage.surrogates import AR1, NARGP, GaussianProcess, Predicts
+from seacage.surrogates import AR1, NARGP, GaussianProcess, ModelAverage, Predicts
 
 Levels = Sequence[tuple[np.ndarray, np.ndarray]]
 Predict = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -25,12 +25,23 @@ def ar1(levels: Levels, *, seed: int, **_: object) -> Predict:
     return _predict(AR1().fit(levels, seed=seed))
 
 
+def average(levels: Levels, *, seed: int, **_: object) -> Predict:
+    """NARGP with both kernels, AR1 and the level alone, averaged."""
+    return _predict(ModelAverage().fit(levels, seed=seed))
+
+
 def high_only(levels: Levels, *, seed: int, **_: object) -> Predict:
     """A Gaussian process of the highest fidelity alone."""
     return _predict(GaussianProcess().fit(*levels[-1], seed=seed))
 
 
-METHODS = {"nargp": nargp, "nargp-published": published, "ar1": ar1, "high-only": high_only}
+METHODS = {
+    "nargp": nargp,
+    "nargp-published": published,
+    "ar1": ar1,
+    "average": average,
+    "high-only": high_only,
+}
 
 
 def _predict(fitted: Predicts) -> Predict:

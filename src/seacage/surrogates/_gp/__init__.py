@@ -4,6 +4,7 @@ from seacage.surrogates._gp._ensemble import Ensemble
 from seacage.surrogates._gp._gaussian_process import (
     FittedGaussianProcess,
     GaussianProcess,
+    average,
     check_options,
     condense,
     fit_process,
@@ -47,6 +48,7 @@ __all__ = [
     "SameCase",
     "StationaryKernel",
     "Sum",
+    "average",
     "check_options",
     "chunks",
     "condense",

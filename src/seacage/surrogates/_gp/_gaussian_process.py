@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self, get_args
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting, setting_list
@@ -26,6 +26,7 @@ RowFeature = Float[np.ndarray, "row feature"]
 RowOutput = Float[np.ndarray, "row output"]
 MANY_OUTPUTS = 16  # more outputs than this are condensed before the kernel is fitted to them
 CONDENSED = 1e-6  # share of the outputs' variance that condensing may leave out
+NEGLIGIBLE = 0.02  # weight of a process in an average
 SHARED_POINTS = 5.0  # weight of the shared variance against each output's own roughness, in points
 
 
@@ -115,6 +116,8 @@ class FittedGaussianProcess:
     # What each output is expected to rise by with each standardised feature; the members are of
     # what is left
     line: Float[np.ndarray, "feature output"]
+    # Of each member: the standard deviation that its kernel's is a share of, over the amplitude
+    factor: Float[np.ndarray, " member"]
 
     @property
     def posterior(self) -> Posterior:
@@ -171,9 +174,9 @@ class FittedGaussianProcess:
         mean_slope = self._average([one.mean_slope for one in parts])
         # Of the law of total variance: of each member's, and of their means about the mean.
         variance_slopes = [
-            self.amplitude[0] ** 2 * one.variance_slope
+            (factor * self.amplitude[0]) ** 2 * one.variance_slope
             + 2.0 * (one.mean[:, None] - of_members) * (one.mean_slope - mean_slope)
-            for one in parts
+            for one, factor in zip(parts, self.factor, strict=True)
         ]
         return Moments(
             mean=mean[:, 0],
@@ -205,7 +208,22 @@ class FittedGaussianProcess:
             )
         x = self.inputs.standardise(x)
         y = y - self._trend(x)
-        members = [member.updated(x, y, amplitude=self.amplitude) for member in self.members]
+        members = [
+            member.updated(x, y, amplitude=factor * self.amplitude)
+            for member, factor in zip(self.members, self.factor, strict=True)
+        ]
+        return replace(self, members=tuple(members))
+
+    def kept(self, cases: Bool[np.ndarray, " n"]) -> Self:
+        """Conditioned on some of its cases alone, with the hyperparameters of all."""
+        members = [
+            member.condition(
+                member.x[cases],
+                member.observations()[cases],
+                noise_factor=member.noise_factor[cases],
+            )
+            for member in self.members
+        ]
         return replace(self, members=tuple(members))
 
     def cases(self) -> Float[np.ndarray, "n feature"]:
@@ -270,17 +288,22 @@ class FittedGaussianProcess:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        first = self.posterior
+        first, kernels = self.posterior, [member.kernel.name for member in self.members]
+        most = max(len(member.log_parameters) for member in self.members)
         settings: Settings = {
             "model": self.MODEL,
-            "kernel": first.kernel.name,
+            # Versions that know of one kernel refuse the name of several.
+            "kernel": kernels[0] if len(set(kernels)) == 1 else ",".join(kernels),
             "noise": first.noise.name,
             "single": self.single,
             "about_line": bool(self.line.any()),
         }
         arrays = {
             "share": self.share,
-            "log_parameters": np.stack([member.log_parameters for member in self.members]),
+            # Kernels with fewer than the most are filled up.
+            "log_parameters": np.stack(
+                [np.resize(member.log_parameters, most) for member in self.members]
+            ),
             "log_noise": np.stack([member.log_noise for member in self.members]),
             "weights": np.stack([member.weights for member in self.members]),
             "inputs": first.x,
@@ -292,6 +315,8 @@ class FittedGaussianProcess:
         }
         if self.line.any():
             arrays["line"] = self.line
+        if np.any(self.factor != 1.0):
+            arrays["factor"] = self.factor
         anchor = first.noise.anchor
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 
@@ -304,11 +329,11 @@ class FittedGaussianProcess:
         later: bool = False,  # factorise when a variance is first asked for
     ) -> Self:
         """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
-        kernel = restore_kernel(setting(settings, "kernel", str))
+        kernels = [restore_kernel(name) for name in setting(settings, "kernel", str).split(",")]
         single = setting(settings, "single", bool)
         x = array(arrays, "inputs", None, None)
         rows, width = x.shape
-        share = array(arrays, "share", None)
+        share = array(arrays, "share", len(kernels) if len(kernels) > 1 else None)
         weights = array(arrays, "weights", len(share), rows, 1 if single else None)
         outputs = weights.shape[2]
         noise = restore_noise(
@@ -316,14 +341,18 @@ class FittedGaussianProcess:
             lambda: array(arrays, "anchor", None, width),
             outputs=outputs,
         )
-        parameters = array(arrays, "log_parameters", len(share), kernel.size(width))
+        kernels = kernels * len(share) if len(kernels) == 1 else kernels
+        sizes = [kernel.size(width) for kernel in kernels]
+        parameters = array(arrays, "log_parameters", len(share), max(sizes, default=None))
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
         noise_factor = array(arrays, "doubt", rows)
         members = [
-            Process(kernel=kernel, log_parameters=own, noise=noise, log_noise=own_noise).restore(
-                x, weight, noise_factor=noise_factor, later=later
+            Process(
+                kernel=kernel, log_parameters=own[:size], noise=noise, log_noise=own_noise
+            ).restore(x, weight, noise_factor=noise_factor, later=later)
+            for kernel, size, own, own_noise, weight in zip(
+                kernels, sizes, parameters, log_noise, weights, strict=True
             )
-            for own, own_noise, weight in zip(parameters, log_noise, weights, strict=True)
         ]
         inputs = Scaling(
             centre=array(arrays, "input_centre", width), spread=array(arrays, "input_spread", width)
@@ -339,6 +368,10 @@ class FittedGaussianProcess:
             line=array(arrays, "line", width, outputs)
             if settings.get("about_line", False)
             else np.zeros((width, outputs)),
+            # And those of one kernel without factors.
+            factor=array(arrays, "factor", len(share))
+            if "factor" in arrays
+            else np.ones(len(share)),
         )
 
     def _standardise(self, x: RowFeature, *, what: str) -> RowFeature:
@@ -346,7 +379,7 @@ class FittedGaussianProcess:
         return self.inputs.standardise(x)
 
     def _noise(self, x: RowFeature) -> RowOutput:
-        shares = self._average([member.noise_at(x) for member in self.members])
+        shares = self._average(self._scaled([member.noise_at(x) for member in self.members]))
         return shares * self.amplitude**2
 
     def _average(self, parts: Sequence[Float[np.ndarray, "row *rest"]]) -> np.ndarray:
@@ -355,11 +388,16 @@ class FittedGaussianProcess:
             return parts[0]
         return np.tensordot(self.share, np.stack(parts), axes=1)
 
+    def _scaled(self, variances: Sequence[RowOutput]) -> list[RowOutput]:
+        """Of the members, as shares of the amplitude's square."""
+        return [factor**2 * one for factor, one in zip(self.factor, variances, strict=True)]
+
     def _mix(self, x: RowFeature, answers: Sequence[Answer]) -> tuple[RowOutput, RowOutput]:
         """Mean and variance of the outputs, by the law of total variance over the members."""
         means = [mean for mean, _ in answers]
         mean = self._average(means)
-        variance = self._average([variance for _, variance in answers]) * self.amplitude**2
+        variances = self._scaled([variance for _, variance in answers])
+        variance = self._average(variances) * self.amplitude**2
         if len(answers) > 1:
             variance = variance + self._average([(one - mean) ** 2 for one in means])
         return mean + self._trend(x), variance
@@ -462,6 +500,28 @@ def fit_process(
         amplitude=wider * np.sqrt(variance),
         single=y.shape[1] == 1,
         line=line,
+        factor=np.ones(len(members)),
+    )
+
+
+def average(
+    processes: Sequence[FittedGaussianProcess], weight: Float[np.ndarray, " process"]
+) -> FittedGaussianProcess:
+    """One process whose members are those of several, each process with its weight.
+
+    ``processes``: of one output and the same cases, scales and line, with kernels of their own.
+    ``weight``: their sum is 1; those below ``NEGLIGIBLE`` are left out.
+    """
+    order = [one for one in np.argsort(-weight) if weight[one] >= NEGLIGIBLE]
+    first, total = processes[order[0]], weight[order].sum()
+    amplitude = first.amplitude[0] or 1.0
+    return replace(
+        first,
+        members=tuple(member for one in order for member in processes[one].members),
+        share=np.concatenate([weight[one] / total * processes[one].share for one in order]),
+        factor=np.concatenate(
+            [processes[one].amplitude / amplitude * processes[one].factor for one in order]
+        ),
     )
 
 

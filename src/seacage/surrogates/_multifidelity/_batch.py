@@ -16,7 +16,6 @@ from seacage.surrogates import _gp
 from seacage.surrogates._multifidelity._kernel import LOCAL, bend_of
 from seacage.surrogates._multifidelity._quadrature import node_counts, rule, total_moments
 from seacage.surrogates._prediction import Prediction, check_inputs
-from seacage.surrogates._scaling import Scaling
 
 # Covariances held at once, of all levels together: 1 MiB, which stays near the processor
 CELLS = 2**17
@@ -91,20 +90,27 @@ class BatchedLevels:
     # Of each member's inputs
     centre: Float[np.ndarray, "member 1 feature"]
     unit: Float[np.ndarray, "member 1 feature"]
-    outputs: Scaling  # centre and amplitude of each level's
+    outputs: Float[np.ndarray, " level"]  # centre of each level's
+    amplitude: Float[np.ndarray, " member"]  # of its level's output
     # Length over which each level bends with the one below, in that one's unit
     bend: Float[np.ndarray, " level"]
 
     @classmethod
     def of(cls, levels: Sequence[_gp.FittedGaussianProcess]) -> Self:
         """Put together; each has one output and a link kernel."""
-        order = sorted(range(len(levels)), key=lambda level: levels[level].posterior.kernel.name)
-        members = tuple(member for level in order for member in levels[level].members)
-        owner = np.repeat(order, [len(levels[level].members) for level in order])
-        share = np.zeros((len(levels), len(members)))
-        share[owner, np.arange(len(members))] = np.concatenate(
-            [levels[level].share for level in order]
+        # Of one kernel one after the other, as they are evaluated together.
+        each = sorted(
+            (
+                (owner, place)
+                for owner, one in enumerate(levels)
+                for place in range(len(one.members))
+            ),
+            key=lambda pair: levels[pair[0]].members[pair[1]].kernel.name,
         )
+        members = tuple(levels[owner].members[place] for owner, place in each)
+        owner = np.array([owner for owner, _ in each])
+        share = np.zeros((len(levels), len(members)))
+        share[owner, np.arange(len(members))] = [levels[one].share[place] for one, place in each]
         most = max(len(member.x) for member in members)
         alike = groupby(members, key=lambda member: member.kernel.name)
         weights = np.zeros((len(members), most, 1))
@@ -120,9 +126,9 @@ class BatchedLevels:
             line=np.stack([level.line for level in levels])[owner],
             centre=np.stack([level.inputs.centre for level in levels])[owner, None],
             unit=np.stack([level.inputs.unit for level in levels])[owner, None],
-            outputs=Scaling(
-                centre=np.concatenate([level.centre for level in levels]),
-                spread=np.concatenate([level.amplitude for level in levels]),
+            outputs=np.concatenate([level.centre for level in levels]),
+            amplitude=np.array(
+                [levels[one].amplitude[0] * levels[one].factor[place] for one, place in each]
             ),
             bend=np.array([bend_of(level) for level in levels]),
         )
@@ -190,6 +196,6 @@ class BatchedLevels:
     ) -> tuple[Float[np.ndarray, "level value"], Float[np.ndarray, "level value"]]:
         """Mean and variance of the outputs, by the law of total variance over the members."""
         mean = self.share @ means
-        variance = self.share @ variances * self.outputs.spread[:, None] ** 2
+        variance = self.share @ (variances * self.amplitude[:, None] ** 2)
         variance += self.share @ (means - mean[self.owner]) ** 2
-        return mean + self.outputs.centre[:, None], variance
+        return mean + self.outputs[:, None], variance

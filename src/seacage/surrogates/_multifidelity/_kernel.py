@@ -22,6 +22,9 @@ LINK_LENGTH = (math.log(6.0), 0.9)
 # Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels
 ALIKE_LINE = (-4.0, 2.0)
 
+# Mean and sd of the log variance of a line in the inputs, in their spreads
+TREND = (-6.0, 1.0)
+
 # Mean and sd of delta's log length less that of the lowest level, where that is known and short. A
 # level that turns fast with a feature leaves something that does so too. One that hardly follows a
 # feature may do so wrongly: of the remainder there, a long length says nothing.
@@ -192,14 +195,31 @@ def straight() -> LinkKernel:
     return LinkKernel(line, rest, "straight", bends=False)
 
 
+def regression() -> LinkKernel:
+    """Lines in the level below and in the inputs: s (1 + f f') + t (1 + x x').
+
+    Bayesian linear regression on both, as a spreadsheet would do it.
+    """
+    line, trend = LinearKernel(offset=1.0), LinearKernel(offset=1.0, variance=TREND)
+    return LinkKernel(
+        _gp.Columns(trend, LOCAL), _gp.Columns(line, BELOW), "regression", bends=False
+    )
+
+
+def alone() -> LinkKernel:
+    """The inputs alone: k(x, x') + t (1 + x x'), without the level below."""
+    smooth, trend = _gp.StationaryKernel(BELL), LinearKernel(offset=1.0, variance=TREND)
+    return LinkKernel(_gp.Columns(smooth, LOCAL), _gp.Columns(trend, LOCAL), "alone", bends=False)
+
+
 def bend_of(level: _gp.FittedGaussianProcess) -> float:
     """Least length over which a level bends with the one below, in that one's unit."""
-    kernel, width = level.posterior.kernel, len(level.inputs.centre)
-    assert isinstance(kernel, LinkKernel)
-    if not kernel.bends:
-        return math.inf
-    log_length = min(member.log_parameters[width] for member in level.members)
-    return math.exp(log_length) * float(level.inputs.unit[-1])
+    width, least = len(level.inputs.centre), math.inf
+    for member in level.members:
+        assert isinstance(member.kernel, LinkKernel)
+        if member.kernel.bends:
+            least = min(least, math.exp(member.log_parameters[width]))
+    return least * float(level.inputs.unit[-1])
 
 
 def _to_mean(x: np.ndarray, square: np.ndarray) -> np.ndarray:
@@ -216,4 +236,6 @@ def _delta_length(known: float, *, features: int) -> _gp.Normal:
     return (expected, sd) if expected < general[0] else general
 
 
-_gp.register_kernels(autoregressive(linear=True), autoregressive(linear=False), straight())
+_gp.register_kernels(
+    autoregressive(linear=True), autoregressive(linear=False), straight(), regression(), alone()
+)

@@ -1,9 +1,9 @@
 """Nonlinear autoregressive Gaussian processes: each fidelity corrects the one below."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from jaxtyping import Float
@@ -12,7 +12,15 @@ from numpy.typing import ArrayLike
 from seacage.conventions import InputError, ModelError
 from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, setting
-from seacage.surrogates._multifidelity._kernel import LinkKernel, autoregressive, bend_of, straight
+from seacage.surrogates._multifidelity._folds import LEAST_CASES, Folds, log_density, pseudo_bma
+from seacage.surrogates._multifidelity._kernel import (
+    LinkKernel,
+    alone,
+    autoregressive,
+    bend_of,
+    regression,
+    straight,
+)
 from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
 from seacage.surrogates._prediction import (
     Moments,
@@ -25,14 +33,27 @@ from seacage.surrogates._scaling import Scaling
 
 NFeature = Float[np.ndarray, "n feature"]
 PerFeature = Float[np.ndarray, " feature"]
+PerHeldOut = Float[np.ndarray, " held"]
 PerRow = Float[np.ndarray, " row"]
 RowFeature = Float[np.ndarray, "row feature"]
+ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
 # Step of central differences, in spreads of a feature; their error falls with its square
 DIFFERENCE = 1e-4
+
+SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature
 
 # Two levels are taken for the same quantity where their difference has less than this share of the
 # upper one's spread
 ALIKE = 0.5
+
+# Kernels of a level, from the log lengths below and whether it is like the level below
+MODELS: Mapping[ModelName, Callable[[tuple[float, ...], bool], LinkKernel]] = {
+    "nargp": lambda lengths, alike: autoregressive(linear=True, lengths=lengths, alike=alike),
+    "nargp-published": lambda lengths, _: autoregressive(linear=False, lengths=lengths),
+    "ar1": lambda *_: straight(),
+    "regression": lambda *_: regression(),
+    "alone": lambda *_: alone(),
+}
 
 # Inputs (n, features) and outputs (n,) of one fidelity
 Cases = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, " _"]]
@@ -50,8 +71,8 @@ class AbstractMultifidelity(ABC):
         _gp.check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
-    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
-        """Covariance of a level over its inputs and the level below.
+    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
+        """Covariances of a level over its inputs and the level below, which are averaged.
 
         ``lengths``: log lengths of the lowest level, in spreads of this level's inputs; empty where
         a lent one has none. ``alike``: whether the level below explains most of this one as it is.
@@ -69,6 +90,9 @@ class AbstractMultifidelity(ABC):
         # A fitted model that serves as level 1; ``levels`` then begins at level 2. It has to answer
         # with one number per row.
         lower: Predicts | None = None,
+        # Cases of the highest level that are held out together to weigh its models, where it has
+        # several; None for ten folds at random
+        folds: Folds | None = None,
     ) -> "FittedNARGP":
         """Learn each level from its own cases.
 
@@ -85,7 +109,7 @@ class AbstractMultifidelity(ABC):
         seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
         fitted = FittedNARGP(own=(), lent=lower, nested=nested)
         for index, (x, y) in enumerate(cases):
-            kernel: _gp.AbstractKernel = _gp.StationaryKernel("squared-exponential")
+            kernels: Sequence[_gp.AbstractKernel] = [_gp.StationaryKernel("squared-exponential")]
             inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
                 if nested:
@@ -93,10 +117,20 @@ class AbstractMultifidelity(ABC):
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
                 alike = bool(np.std(y - below) < ALIKE * np.std(y))
-                kernel = self.link(_lengths_below(fitted, x), alike=alike)
-                inputs, slope = np.column_stack([x, below]), np.append(slope, kernel.ratio)
-            added = self._process(kernel, inputs, y[:, None], slope=slope, seed=seeds[index])
-            fitted = replace(fitted, own=(*fitted.own, added))
+                kernels = links = self.links(_lengths_below(fitted, x), alike=alike)
+                inputs, slope = np.column_stack([x, below]), np.append(slope, links[0].ratio)
+            added = [
+                self._process(kernel, inputs, y[:, None], slope=slope, seed=seeds[index])
+                for kernel in kernels
+            ]
+            models = [replace(fitted, own=(*fitted.own, one)) for one in added]
+            fitted = models[0]
+            if len(models) > 1:
+                last = index == len(cases) - 1
+                out = folds if folds and last else Folds.random(len(y), seed=seeds[index])
+                density = np.stack([model.held_out_density(y, out) for model in models])
+                together = _gp.average(added, pseudo_bma(density, out.independent))
+                fitted = fitted._replaced(fitted.levels, together)  # noqa: SLF001
         return fitted
 
     def _process(
@@ -145,8 +179,8 @@ class NARGP(AbstractMultifidelity):
 
     linear: bool = True
 
-    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:
-        return autoregressive(linear=self.linear, lengths=lengths, alike=alike)
+    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
+        return [autoregressive(linear=self.linear, lengths=lengths, alike=alike)]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -164,8 +198,38 @@ class AR1(AbstractMultifidelity):
     Uncertainty Quantification 4:365-386, for the recursion.
     """
 
-    def link(self, lengths: tuple[float, ...], *, alike: bool) -> LinkKernel:  # noqa: ARG002
-        return straight()
+    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:  # noqa: ARG002
+        return [straight()]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModelAverage(AbstractMultifidelity):
+    """Average of several multifidelity regressions, not yet fitted; any number of levels.
+
+    Each level is one of ``MODELS``, or a mixture of them by pseudo-BMA: in proportion to the
+    density that each gives to cases which are held out, at this level and at all below. No single
+    one is best everywhere, and where little is known the weights are nearly equal. The fitted
+    model is that of ``NARGP``, with several kernels in a level.
+
+    ``models``: by name.
+    ``noise``, ``ensemble``, ``restarts``: as for ``NARGP``.
+
+    Source: Yao et al. (2018), "Using stacking to average Bayesian predictive distributions",
+    Bayesian Analysis 13:917-1007.
+    """
+
+    models: tuple[ModelName, ...] = ("nargp", "nargp-published", "ar1", "alone")
+
+    def __post_init__(self) -> None:
+        AbstractMultifidelity.__post_init__(self)
+        if not self.models or not set(self.models) <= set(MODELS):
+            raise InputError(
+                f"ModelAverage: models = {self.models!r} must name at least one of "
+                f"{', '.join(MODELS)}, and no other."
+            )
+
+    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
+        return [MODELS[name](lengths, alike) for name in self.models]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -276,6 +340,37 @@ class FittedNARGP:
                 below = fitted.predict(x, level=above - 1).mean
                 fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
+
+    def held_out_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerHeldOut:
+        """Log density of the highest level's cases, those of each fold held out at all levels.
+
+        The hyperparameters, and the level below at the cases that are kept, stay those learned
+        from all. A lent level 1 stays as it is.
+
+        ``y``: their outputs.
+        """
+        below, top = replace(self, own=self.own[:-1]), self.own[-1]
+        x, parts = top.cases()[:, :-1], [np.zeros(0)]
+        lent = None if below.own else below.lower.predict(x)
+        for out, kept in folds.each():
+            lower = lent.rows(out) if lent else below._without(x[out]).predict(x[out])  # noqa: SLF001
+            reduced = top.kept(kept)
+            step = [_Step(reduced)]
+            mean, variance = propagate_moments(step, x[out], lower.mean, lower.std**2)
+            variance += reduced.noise_at(np.column_stack([x[out], lower.mean]))
+            parts.append(log_density(y[out], mean, variance))
+        return np.concatenate(parts)
+
+    def _without(self, x: RowFeature) -> Self:
+        """Without the cases that any level learned here has at some inputs."""
+        own: list[_gp.FittedGaussianProcess] = []
+        for process in self.own:
+            cases, unit = process.cases()[:, : x.shape[1]], process.inputs.unit[: x.shape[1]]
+            distance = np.max(np.abs(cases[:, None] - x) / unit, axis=2)
+            kept = np.min(distance, axis=1) > SAME
+            whole = kept.all() or kept.sum() < LEAST_CASES
+            own.append(process if whole else process.kept(kept))
+        return replace(self, own=tuple(own))
 
     def _replaced(self, level: int, process: _gp.FittedGaussianProcess) -> Self:
         own = list(self.own)

@@ -14,7 +14,9 @@ from seacage.surrogates._gp._kernels import (
 from seacage.surrogates._multifidelity._kernel import (
     LOCAL,
     LinearKernel,
+    alone,
     autoregressive,
+    regression,
     straight,
 )
 
@@ -25,6 +27,8 @@ KERNELS = [
     autoregressive(linear=True),
     autoregressive(linear=False),
     straight(),
+    regression(),
+    alone(),
 ]
 COMPOSED = [
     StationaryKernel("squared-exponential") + Columns(StationaryKernel("matern-5/2"), LOCAL),

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from seacage.surrogates import AR1, NARGP, BatchedLevels, FittedNARGP, GaussianProcess, Prediction
+from seacage.surrogates import (
+    AR1,
+    NARGP,
+    BatchedLevels,
+    FittedNARGP,
+    GaussianProcess,
+    ModelAverage,
+    Prediction,
+)
 from seacage.surrogates._multifidelity import _batch as batch
 from seacage.surrogates._multifidelity._nargp import AbstractMultifidelity
 
@@ -33,6 +41,7 @@ def models() -> tuple[FittedNARGP, ...]:
         fitted_level(NARGP(restarts=0, noise="by-input", ensemble="never"), 41, 0.1),
         fitted_level(NARGP(restarts=0, noise="per-output", ensemble="never"), 41, 0.1),
         fitted_level(NARGP(restarts=0, ensemble="always"), 12, 1.0),
+        fitted_level(ModelAverage(restarts=0), 12, 3.0),
     )
 
 
@@ -55,7 +64,7 @@ def made_prediction(rows: int, models: int, spread: float) -> Prediction:
     return Prediction(mean=random.normal(0.0, 0.8, (rows, models)), std=std)
 
 
-@pytest.mark.parametrize("which", range(6))
+@pytest.mark.parametrize("which", range(7))
 def test_one_level_answers_what_its_model_answers(
     which: int, models: tuple[FittedNARGP, ...]
 ) -> None:
