@@ -15,13 +15,18 @@ from seacage.surrogates import (
     BatchedLevels,
     Domain,
     FittedNARGP,
+    Folds,
+    ModelAverage,
+    ModelName,
     Prediction,
     Predicts,
     is_gain,
+    log_density,
+    pseudo_bma,
 )
 from seacage.twin._pairs import Pairs
 
-PerCase = Float[np.ndarray, " case"]
+CaseSensor = Float[np.ndarray, "case *sensor"]
 PerPair = Float[np.ndarray, " pair"]
 
 GAIN_SD = 0.5  # how far from 1 a gain is expected: the simulations may be half wrong, seldom more
@@ -30,6 +35,14 @@ HOUR = 3_600_000_000  # [us]
 # Least share of the fitted noise variance that is the cage's and not the instrument's. Where the
 # errors are as small as the instrument's noise, the two cannot be separated; too wide is better.
 LEAST_SHARE = 0.5
+
+# Models of what a gain leaves, which are averaged (decision 76)
+REST_MODELS: tuple[ModelName, ...] = ("nargp", "ar1", "regression")
+# Blocks of readings that are held out to weigh them [s]: days where there are four, else two hours,
+# without the readings near to these
+DAY, SHORT_BLOCK, SHORT_GAP = 86400.0, 7200.0, 1800.0
+LEAST_DAYS, LEAST_BLOCKS = 4, 2
+HALF_TIDE = 22357.0  # [s] whose readings are worth a single independent one
 
 Features = Float[np.ndarray, "case feature"]
 
@@ -72,10 +85,13 @@ class Correction:
 
     A NARGP alone returns to the mean of its training data in water unlike that of the training
     window. A shackle's window is half a day, so its correction has to extrapolate: the gain
-    does, and the NARGP is fitted to the remainder.
+    does, and an average of NARGP, AR1 and a linear regression is fitted to the remainder. All
+    this is averaged with level 1 as it is, each weighted by how probable it finds blocks of
+    readings that are held out. A window of minutes has no blocks: NARGP has all the weight.
     """
 
     gain: float  # change of the reading per change of level 1 [-]
+    weight: float = 1.0  # of this against level 1 as it is [-]
     rest: FittedNARGP  # of the reading less gain times level 1 [N] or [m]; its own level 1 is lent
     spread: Spread = Spread()  # calibration of the standard deviation
 
@@ -84,8 +100,18 @@ class Correction:
         """Fit to readings and the features of the water at their times."""
         low = lower.predict(x).mean
         gain = fit_gain(low, pairs.value, pairs.time)
-        rest = NARGP(restarts=restarts).fit([(x, pairs.value - gain * low)], seed=seed, lower=lower)
-        return cls(gain=gain, rest=rest)
+        above = pairs.value - gain * low
+        folds = time_folds(pairs.time)
+        if len(folds.each()) < LEAST_BLOCKS:
+            rest = NARGP(restarts=restarts).fit([(x, above)], seed=seed, lower=lower)
+            return cls(gain=gain, rest=rest)
+        average = ModelAverage(models=REST_MODELS, restarts=restarts)
+        rest = average.fit([(x, above)], seed=seed, lower=lower, folds=folds)
+        error = np.concatenate([(pairs.value - low)[out] for out, _ in folds.each()])
+        alone = log_density(error, np.zeros_like(error), np.full_like(error, np.mean(error**2)))
+        density = np.stack([rest.held_out_density(above, folds), alone])
+        weight, _ = pseudo_bma(density, folds.independent)
+        return cls(gain=gain, weight=float(weight), rest=rest)
 
     def beats_level_1(self, pairs: Pairs, low: PerPair) -> bool:
         """Whether it predicts its training readings better than level 1, and not by chance.
@@ -96,7 +122,8 @@ class Correction:
         ``pairs``: the training readings. ``low``: level 1 at them [N] or [m].
         """
         (rest,) = self.rest.upper
-        left_out = self.gain * low + np.ravel(rest.leave_one_out().mean)
+        above = (self.gain - 1.0) * low + np.ravel(rest.leave_one_out().mean)
+        left_out = low + self.weight * above
         better = np.abs(pairs.value - low) - np.abs(pairs.value - left_out)
         hours = _hours(pairs.time)
         if len(np.unique(hours)) < 2:
@@ -138,10 +165,6 @@ class Correction:
         latent = self.alone.latent(x, column, np.zeros_like(column.mean))
         return Prediction(mean=latent.mean[:, 0], std=latent.std[:, 0])
 
-    def latent_variance(self, rest_std: PerCase, low_std: PerCase) -> PerCase:
-        """Variance of a reading without the instrument's noise, before calibration."""
-        return rest_std**2 + (self.gain * low_std) ** 2 + self.own
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Corrections:
@@ -150,6 +173,7 @@ class Corrections:
     rest: BatchedLevels  # of each, beside the gain
     # Of each ``Correction`` and its ``Spread``
     gain: Float[np.ndarray, " sensor"]
+    weight: Float[np.ndarray, " sensor"]
     own: Float[np.ndarray, " sensor"]
     scale: Float[np.ndarray, " sensor"]
     water_sd: Float[np.ndarray, " sensor"]
@@ -161,6 +185,7 @@ class Corrections:
         return cls(
             rest=BatchedLevels.of([level for model in models for level in model.rest.upper]),
             gain=np.array([model.gain for model in models]),
+            weight=np.array([model.weight for model in models]),
             own=np.array([model.own for model in models]),
             scale=np.array([model.spread.scale for model in models]),
             water_sd=np.array([model.spread.water_sd for model in models]),
@@ -179,10 +204,29 @@ class Corrections:
         The scatter that the water does not explain is not left out, as it is the cage's own.
         The line's and the NARGP's shares of level 1's small variance are taken as independent.
         """
-        rest = self.rest.predict(x, low)
-        own = rest.std**2 + (self.gain * low.std) ** 2 + self.own
+        mean, own = self.uncalibrated(self.rest.predict(x, low), low)
         variance = self.scale**2 * own + (self.gain * steepness * self.water_sd) ** 2
-        return Prediction(mean=rest.mean + self.gain * low.mean, std=np.sqrt(variance))
+        return Prediction(mean=mean, std=np.sqrt(variance))
+
+    def uncalibrated(self, rest: Prediction, low: Prediction) -> tuple[CaseSensor, CaseSensor]:
+        """Mean and variance of readings without the instrument's noise, before calibration.
+
+        ``rest``: what level 1 and the gain leave, (case, sensor).
+        ``low``: level 1 there.
+        """
+        above = rest.mean + (self.gain - 1.0) * low.mean
+        own = rest.std**2 + (self.gain * low.std) ** 2 + self.own
+        # Of a mixture with level 1 as it is, which is taken to scatter as much.
+        between = self.weight * (1.0 - self.weight) * above**2
+        return low.mean + self.weight * above, own + between
+
+
+def time_folds(time: Shaped[np.ndarray, " pair"]) -> Folds:
+    """Whole days, held out in turn, or blocks of two hours where there are not four days."""
+    second = time.astype("datetime64[us]").astype(np.int64) / 1e6
+    if np.ptp(second) >= LEAST_DAYS * DAY:
+        return Folds.of_time(second, length=DAY, gap=0.0, memory=HALF_TIDE)
+    return Folds.of_time(second, length=SHORT_BLOCK, gap=SHORT_GAP, memory=HALF_TIDE)
 
 
 def fit_gain(low: PerPair, value: PerPair, time: Shaped[np.ndarray, " pair"]) -> float:

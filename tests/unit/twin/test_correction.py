@@ -59,7 +59,9 @@ def test_a_prediction_does_not_depend_on_who_evaluated_level_one():
     model, lower = twin.models.upper["depth-2"], twin.models.lower("depth-2")
     x = np.array([[0.5, 0.3, 0.4], [0.0, 0.0, 0.0]])
     latent, rest = model.latent(x, lower.predict(x)), model.rest.predict(x)
-    np.testing.assert_allclose(latent.mean, rest.mean + model.gain * lower.predict(x).mean)
+    low = lower.predict(x).mean
+    above = rest.mean + (model.gain - 1.0) * low
+    np.testing.assert_allclose(latent.mean, low + model.weight * above)
 
 
 def fitted(value, low, every):

@@ -85,6 +85,8 @@ class Header:
         default_factory=dict[str, surrogates.LoadRatio]
     )
     parted: tuple[PartedHeader, ...] = ()
+    # Of level 2 against level 1, where that is not all
+    weights: Mapping[str, float] = field(default_factory=dict[str, float])
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
 
@@ -105,6 +107,7 @@ def to_parts(
         **_of_loads(models.loads),
         parted=tuple(_of_parted(one) for one in models.parted.kinds) if models.parted else (),
         gains={name: model.gain for name, model in models.upper.items()},
+        weights={name: model.weight for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
         **{name: getattr(models, name) for name in _OF_MODELS},
         **others,
@@ -267,6 +270,7 @@ def _models(
     )
     for sensor, gain in header.gains.items():
         rest = part(f"{UPPER}{sensor}", surrogates.FittedNARGP, lower=models.lower(sensor))
-        model = Correction(gain=gain, rest=rest, spread=header.spreads[sensor])
+        weight = header.weights.get(sensor, 1.0)
+        model = Correction(gain=gain, weight=weight, rest=rest, spread=header.spreads[sensor])
         models = models.with_level_2(sensor, model)
     return models

@@ -3,9 +3,9 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Bool, Float, Int, Shaped
+from jaxtyping import Float, Int, Shaped
 
-from seacage.surrogates import FittedGaussianProcess, ResidualModel
+from seacage.surrogates import ResidualModel
 from seacage.twin._correction import Correction, Spread
 from seacage.twin._pairs import Pairs
 
@@ -106,11 +106,10 @@ def cross_validate(
     for fold in np.unique(fold_of):
         rows, kept = fold_of == fold, fold_of_selected != fold
         whole = model.rest.upper[-1]
-        reduced = _condition(whole, kept) if kept.sum() > 1 else whole
+        reduced = whole.kept(kept) if kept.sum() > 1 else whole
         here = low.rows(rows)
         rest = replace(model.rest, own=(reduced,)).predict(x[rows], below=here)
-        mean[rows] = rest.mean + model.gain * here.mean
-        variance[rows] = model.latent_variance(rest.std, here.std)
+        mean[rows], variance[rows] = model.alone.uncalibrated(rest, here)
     return mean, variance
 
 
@@ -119,16 +118,3 @@ def outside(pairs: Pairs, window: Pairs) -> Pairs:
     margin = np.timedelta64(round(MARGIN * 1e6), "us")
     before, after = pairs.time < window.time[0] - margin, pairs.time > window.time[-1] + margin
     return pairs.rows(before | after)
-
-
-def _condition(
-    process: FittedGaussianProcess, kept: Bool[np.ndarray, " case"]
-) -> FittedGaussianProcess:
-    """Return a process conditioned on some of its cases alone."""
-    members = [
-        member.condition(
-            member.x[kept], member.observations()[kept], noise_factor=member.noise_factor[kept]
-        )
-        for member in process.members
-    ]
-    return replace(process, members=tuple(members))

@@ -111,19 +111,23 @@ def test_a_reading_is_predicted_without_the_days_around_it():
     wrong = replace(chosen, value=chosen.value + 5.0 * (chosen.time <= pairs.time[first][-1]))
     gain, process = fitted.gain, fitted.rest.own[0]
     low = lower.predict(chosen.metocean.features(("current",))).mean
-    moved = process.members[0]
-    moved = moved.condition(
-        moved.x,
-        (wrong.value - gain * low - process.centre)[:, None],
-        noise_factor=moved.noise_factor,
-    )
-    fooled = replace(fitted, rest=replace(fitted.rest, own=(replace(process, members=(moved,)),)))
+    moved = [
+        one.condition(
+            one.x,
+            (wrong.value - gain * low - process.centre)[:, None],
+            noise_factor=one.noise_factor,
+        )
+        for one in process.members
+    ]
+    own = replace(process, members=tuple(moved))
+    fooled = replace(fitted, rest=replace(fitted.rest, own=(own,)))
     mean, variance = cross_validate(fitted, chosen, pairs, x)
     other, _ = cross_validate(fooled, chosen, pairs, x)
     np.testing.assert_allclose(other[first], mean[first], atol=1e-6)
     assert np.abs(other[~first] - mean[~first]).max() > 0.1
     whole = fitted.latent(x, lower.predict(x)).std ** 2
-    assert np.all(variance >= whole - 1e-9)
+    # Models that were averaged may differ less with fewer readings, but hardly.
+    assert np.all(variance >= 0.98 * whole)
 
 
 def test_days_count_in_a_long_window_and_quarters_of_a_tide_in_a_short_one():
