@@ -109,7 +109,7 @@ class Correction:
         rest = average.fit([(x, above)], seed=seed, lower=lower, folds=folds)
         error = np.concatenate([(pairs.value - low)[out] for out, _ in folds.each()])
         alone = log_density(error, np.zeros_like(error), np.full_like(error, np.mean(error**2)))
-        density = np.stack([rest.held_out_density(above, folds), alone])
+        density = np.stack([rest.fold_density(above, folds), alone])
         weight, _ = pseudo_bma(density, folds.independent)
         return cls(gain=gain, weight=float(weight), rest=rest)
 
@@ -204,11 +204,11 @@ class Corrections:
         The scatter that the water does not explain is not left out, as it is the cage's own.
         The line's and the NARGP's shares of level 1's small variance are taken as independent.
         """
-        mean, own = self.uncalibrated(self.rest.predict(x, low), low)
+        mean, own = self.raw_moments(self.rest.predict(x, low), low)
         variance = self.scale**2 * own + (self.gain * steepness * self.water_sd) ** 2
         return Prediction(mean=mean, std=np.sqrt(variance))
 
-    def uncalibrated(self, rest: Prediction, low: Prediction) -> tuple[CaseSensor, CaseSensor]:
+    def raw_moments(self, rest: Prediction, low: Prediction) -> tuple[CaseSensor, CaseSensor]:
         """Mean and variance of readings without the instrument's noise, before calibration.
 
         ``rest``: what level 1 and the gain leave, (case, sensor).

@@ -379,7 +379,7 @@ class FittedGaussianProcess:
         return self.inputs.standardise(x)
 
     def _noise(self, x: RowFeature) -> RowOutput:
-        shares = self._average(self._scaled([member.noise_at(x) for member in self.members]))
+        shares = self._average(self._rescale([member.noise_at(x) for member in self.members]))
         return shares * self.amplitude**2
 
     def _average(self, parts: Sequence[Float[np.ndarray, "row *rest"]]) -> np.ndarray:
@@ -388,7 +388,7 @@ class FittedGaussianProcess:
             return parts[0]
         return np.tensordot(self.share, np.stack(parts), axes=1)
 
-    def _scaled(self, variances: Sequence[RowOutput]) -> list[RowOutput]:
+    def _rescale(self, variances: Sequence[RowOutput]) -> list[RowOutput]:
         """Of the members, as shares of the amplitude's square."""
         return [factor**2 * one for factor, one in zip(self.factor, variances, strict=True)]
 
@@ -396,7 +396,7 @@ class FittedGaussianProcess:
         """Mean and variance of the outputs, by the law of total variance over the members."""
         means = [mean for mean, _ in answers]
         mean = self._average(means)
-        variances = self._scaled([variance for _, variance in answers])
+        variances = self._rescale([variance for _, variance in answers])
         variance = self._average(variances) * self.amplitude**2
         if len(answers) > 1:
             variance = variance + self._average([(one - mean) ** 2 for one in means])

@@ -128,7 +128,7 @@ class AbstractMultifidelity(ABC):
             if len(models) > 1:
                 last = index == len(cases) - 1
                 out = folds if folds and last else Folds.random(len(y), seed=seeds[index])
-                density = np.stack([model.held_out_density(y, out) for model in models])
+                density = np.stack([model.fold_density(y, out) for model in models])
                 together = _gp.average(added, pseudo_bma(density, out.independent))
                 fitted = fitted._replaced(fitted.levels, together)  # noqa: SLF001
         return fitted
@@ -341,7 +341,7 @@ class FittedNARGP:
                 fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
 
-    def held_out_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerHeldOut:
+    def fold_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerHeldOut:
         """Log density of the highest level's cases, those of each fold held out at all levels.
 
         The hyperparameters, and the level below at the cases that are kept, stay those learned

@@ -109,7 +109,7 @@ def cross_validate(
         reduced = whole.kept(kept) if kept.sum() > 1 else whole
         here = low.rows(rows)
         rest = replace(model.rest, own=(reduced,)).predict(x[rows], below=here)
-        mean[rows], variance[rows] = model.alone.uncalibrated(rest, here)
+        mean[rows], variance[rows] = model.alone.raw_moments(rest, here)
     return mean, variance
 
 

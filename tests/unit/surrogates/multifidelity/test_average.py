@@ -137,7 +137,7 @@ def test_cases_are_held_out_at_the_levels_below_too() -> None:
     fitted = NARGP(restarts=0, ensemble="never").fit(levels, nested=True)
     lent = NARGP(restarts=0, ensemble="never").fit(levels[1:], lower=fitted.own[0])
     folds = Folds.random(12, seed=0)
-    whole, half = (one.held_out_density(levels[1][1], folds).mean() for one in (fitted, lent))
+    whole, half = (one.fold_density(levels[1][1], folds).mean() for one in (fitted, lent))
     assert whole < half - 0.5
 
 
