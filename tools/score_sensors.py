@@ -22,14 +22,16 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
 from seacage.records import read_campaign
-from seacage.studies._paper._boosted_trees import predict_by_trees
-from seacage.surrogates import AR1, GaussianProcess
-from seacage.twin import Metocean, Training, Twin, align, train
+from seacage.studies._paper._sensor_baselines import (
+    SENSOR_BASELINES,
+    predict_by_sensor_baselines,
+)
+from seacage.twin import Metocean, Training, Twin, train
 
 START, DAYS, SCORED_FROM = datetime(2020, 1, 18, tzinfo=UTC), 50.0, 25.0
 EVERY = np.timedelta64(1800, "s")
 TRAINING = Training(restarts=1)
-BASELINES = ("low fidelity", "alone", "AR1", "linear", "trees")
+BASELINES = ("low fidelity", *SENSOR_BASELINES)
 GROUPS = ("depth", "shackle")
 Score = dict[
     str, Any
@@ -101,38 +103,13 @@ def _scores(cage: Cage, base: Twin, field: VirtualField) -> Iterator[Score]:
         level_1 = answer.sensor_low.mean[:, column]
         found = {"twin": mean, "low fidelity": level_1}
         if name in twin.models.upper:
-            found |= dict(zip(BASELINES[1:], _baselines(twin, field, name, water), strict=True))
+            found |= predict_by_sensor_baselines(twin, record, name, water, TRAINING)
         error = {one: float(np.mean(np.abs(each - true))) for one, each in found.items()}
         inside = np.abs(mean - true) <= 1.96 * std
         third = np.digitize(level_1, np.quantile(level_1, [1 / 3, 2 / 3]))
         coverage = [float(inside[third == one].mean()) for one in range(3)]
         level = int(answer.sensor_level[column])
         yield {"sensor": name, "level": level, "error": error, "coverage": coverage}
-
-
-def _baselines(twin: Twin, field: VirtualField, name: str, water: Metocean) -> list[np.ndarray]:
-    window = twin.provenance.training_windows[name]
-    pairs = align(field.record, name, start=window.start, end=window.end, mean_s=TRAINING.mean_s)
-    pairs = TRAINING.select(pairs)
-    inputs, lower = twin.models.inputs, twin.models.lower(name)
-    x, there = pairs.metocean.features(inputs), water.features(inputs)
-    low, low_there = lower.predict(x).mean, lower.predict(there).mean
-    alone = GaussianProcess(restarts=1).fit(x, pairs.value)
-    ar1 = AR1(restarts=1).fit([(x, pairs.value)], lower=lower)
-    line, _, _, _ = np.linalg.lstsq(_columns(low, x), pairs.value, rcond=None)
-    return [
-        alone.predict(there).mean,
-        ar1.predict(there).mean,
-        _columns(low_there, there) @ line,
-        predict_by_trees(x, pairs.value, there),
-    ]
-
-
-def _columns(low: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """One, the low fidelity, and a polynomial with harmonics of the current."""
-    speed, (east, north) = x[:, 0], x[:, 1:].T
-    squares = speed**2, east**2 - north**2, 2.0 * east * north
-    return np.column_stack([np.ones(len(x)), low, speed, east, north, *squares])
 
 
 def _sum_up(water: Water, group: str, fields: list[list[Score]]) -> None:

@@ -20,7 +20,7 @@ _LEAST_READINGS = 100
 _LEAST_BLOCKS = 8
 _HOUR = np.timedelta64(1, "h")
 # A sensor's unit inside, and the one that people read with what it is multiplied by
-_PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
+PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -177,7 +177,7 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
 
 def _compare(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
     column = answer.sensor_names.index(sensor)
-    unit, scale = _PEOPLE[answer.sensor_units[column]]
+    unit, scale = PEOPLE[answer.sensor_units[column]]
     pairs = align(field, sensor)
     word = np.searchsorted(field.buoy.time, pairs.time, side="right") - 1
     valid = answer.valid[word]

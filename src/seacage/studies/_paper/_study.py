@@ -14,12 +14,14 @@ from seacage.studies._page import write_report
 from seacage.studies._paper._claims import PaperClaim, paper_claims
 from seacage.studies._paper._level_one import LevelOneScore, score_level_one
 from seacage.studies._paper._report import page_values
+from seacage.studies._paper._sensor_baselines import BaselineScore, score_sensor_baselines
 from seacage.studies._paper._shape_models import shape_models
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy, ShapeTrial, shape_study
 from seacage.studies._paper._trainings import ScoredWays, WayScore, compare_ways, has_waves, ways_of
 from seacage.studies._paper._wave_loads import WaveLoads, wave_loads
 from seacage.studies._sensor_scores import SensorScore
+from seacage.studies._split import split
 from seacage.studies._text import join_names
 from seacage.twin import TrainingWindow
 
@@ -36,6 +38,7 @@ class PaperStudy:
     ways: tuple[WayScore, ...]  # the scores of each way of training, that of ``sensors`` first
     shapes: tuple[ShapeScore, ...]  # the score of each model of the whole shape
     claims: tuple[PaperClaim, ...]  # of the paper, with their verdicts
+    baselines: tuple[BaselineScore, ...]  # beside level 2, on the same readings
     loads: WaveLoads | None  # those in waves; None where they were not studied
 
 
@@ -117,6 +120,8 @@ def study_chain(
     """Score a chain and report on it, making the stages that are missing."""
     scored = compare_ways(chain, ways_of(chain.recipe, waves=has_waves(chain)))
     level_one = score_level_one(scored.twin, chain.held_out)
+    days = split(chain.field, teaching_days=chain.recipe.teaching_days)
+    baselines = tuple(score_sensor_baselines(scored.twin, *days, chain.recipe.training))
     shapes = _shapes(chain, networks=networks)
     claims = paper_claims(scored, shapes)
     shape_scores = tuple(shapes.scores.values())
@@ -130,6 +135,7 @@ def study_chain(
         "shapes": shape_scores,
         "variance_of_three_modes": shapes.variance,
         "claims": claims,
+        "sensor_baselines": baselines,
         "wave_loads": loads,
     }
     values = page_values(chain, scored, shapes, loads)
@@ -142,6 +148,7 @@ def study_chain(
         ways=scored.ways,
         shapes=shape_scores,
         claims=claims,
+        baselines=baselines,
         loads=loads,
     )
 

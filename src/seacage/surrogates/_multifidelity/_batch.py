@@ -99,18 +99,12 @@ class BatchedLevels:
     def of(cls, levels: Sequence[_gp.FittedGaussianProcess]) -> Self:
         """Put together; each has one output and a link kernel."""
         # Of one kernel one after the other, as they are evaluated together.
-        each = sorted(
-            (
-                (owner, place)
-                for owner, one in enumerate(levels)
-                for place in range(len(one.members))
-            ),
-            key=lambda pair: levels[pair[0]].members[pair[1]].kernel.name,
-        )
-        members = tuple(levels[owner].members[place] for owner, place in each)
-        owner = np.array([owner for owner, _ in each])
+        places = [(level, k) for level, one in enumerate(levels) for k in range(len(one.members))]
+        places.sort(key=lambda place: levels[place[0]].members[place[1]].kernel.name)
+        members = tuple(levels[level].members[k] for level, k in places)
+        owner = np.array([level for level, _ in places])
         share = np.zeros((len(levels), len(members)))
-        share[owner, np.arange(len(members))] = [levels[one].share[place] for one, place in each]
+        share[owner, np.arange(len(members))] = [levels[level].share[k] for level, k in places]
         most = max(len(member.x) for member in members)
         alike = groupby(members, key=lambda member: member.kernel.name)
         weights = np.zeros((len(members), most, 1))
@@ -128,7 +122,7 @@ class BatchedLevels:
             unit=np.stack([level.inputs.unit for level in levels])[owner, None],
             outputs=np.concatenate([level.centre for level in levels]),
             amplitude=np.array(
-                [levels[one].amplitude[0] * levels[one].factor[place] for one, place in each]
+                [levels[level].amplitude[0] * levels[level].factor[k] for level, k in places]
             ),
             bend=np.array([bend_of(level) for level in levels]),
         )

@@ -52,7 +52,7 @@ class Folds:
     def each(self) -> Sequence[tuple[Bool[np.ndarray, " case"], Bool[np.ndarray, " case"]]]:
         """Cases out and kept in each fold that keeps enough of them."""
         pairs = zip(self.out, self.kept, strict=True)
-        return [(out, kept) for out, kept in pairs if out.any() and kept.sum() >= LEAST_CASES]
+        return [(out, kept) for out, kept in pairs if kept.sum() >= LEAST_CASES]
 
 
 def log_density(y: PerCase, mean: PerCase, variance: PerCase) -> PerCase:

@@ -214,12 +214,13 @@ def alone() -> LinkKernel:
 
 def bend_of(level: _gp.FittedGaussianProcess) -> float:
     """Least length over which a level bends with the one below, in that one's unit."""
-    width, least = len(level.inputs.centre), math.inf
-    for member in level.members:
-        assert isinstance(member.kernel, LinkKernel)
-        if member.kernel.bends:
-            least = min(least, math.exp(member.log_parameters[width]))
-    return least * float(level.inputs.unit[-1])
+    width = len(level.inputs.centre)
+    lengths = [
+        member.log_parameters[width]
+        for member in level.members
+        if isinstance(member.kernel, LinkKernel) and member.kernel.bends
+    ]
+    return math.exp(min(lengths, default=math.inf)) * float(level.inputs.unit[-1])
 
 
 def _to_mean(x: np.ndarray, square: np.ndarray) -> np.ndarray:

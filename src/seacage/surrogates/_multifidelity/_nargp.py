@@ -33,13 +33,11 @@ from seacage.surrogates._scaling import Scaling
 
 NFeature = Float[np.ndarray, "n feature"]
 PerFeature = Float[np.ndarray, " feature"]
-PerHeldOut = Float[np.ndarray, " held"]
 PerRow = Float[np.ndarray, " row"]
 RowFeature = Float[np.ndarray, "row feature"]
 ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
 # Step of central differences, in spreads of a feature; their error falls with its square
 DIFFERENCE = 1e-4
-
 SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature
 
 # Two levels are taken for the same quantity where their difference has less than this share of the
@@ -341,7 +339,7 @@ class FittedNARGP:
                 fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
 
-    def fold_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerHeldOut:
+    def fold_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerRow:
         """Log density of the highest level's cases, those of each fold held out at all levels.
 
         The hyperparameters, and the level below at the cases that are kept, stay those learned

@@ -1,0 +1,62 @@
+"""Baselines beside level 2, on the stand-in cage."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from seacage.cage import Cage
+from seacage.conventions import Origin
+from seacage.studies._paper._sensor_baselines import (
+    SENSOR_BASELINES,
+    TWIN,
+    predict_by_sensor_baselines,
+    score_sensor_baselines,
+)
+from seacage.studies._split import split
+from seacage.testing import stand_in_field, stand_in_twin
+from seacage.twin import Metocean, Training
+
+TRAINING = Training(high_fidelity_points=60, days=2.0, restarts=0)
+
+
+@pytest.fixture(scope="module")
+def field():
+    return stand_in_field(Cage.named("ace").altered(mesh={"spokes": 8}))
+
+
+@pytest.mark.slow
+def test_each_sensor_with_level_2_is_scored_beside_four_baselines(field):
+    twin = stand_in_twin()
+    days = split(field, teaching_days=1)
+    scores = list(score_sensor_baselines(twin, *days, TRAINING))
+    assert [one.sensor for one in scores] == list(twin.models.upper)
+    for one in scores:
+        assert one.origin is Origin.VIRTUAL_FIELD
+        assert one.unit == ("m" if one.sensor.startswith("depth") else "kN")
+        assert set(one.mae) == {TWIN, *SENSOR_BASELINES}
+        assert set(one.gain) == set(SENSOR_BASELINES)
+        for name, gain in one.gain.items():
+            assert gain.low <= gain.mean <= gain.high
+            assert gain.mean == pytest.approx(one.mae[name] - one.mae[TWIN], rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.slow
+def test_a_line_through_level_1_is_found_by_the_baselines_that_have_it(field):
+    twin = stand_in_twin()
+    name = next(iter(twin.models.upper))
+    lower = twin.models.lower(name)
+    record = field.sensors[name]
+    (key,) = record.values
+    water = Metocean.of_record(field.buoy)
+    held = np.searchsorted(field.buoy.time, record.time, side="right") - 1
+    low = lower.predict(water.rows(np.maximum(held, 0)).features(("current",))).mean
+    made = replace(record, values={key: 2.0 * low + 1.0})
+    new = replace(field, sensors={**field.sensors, name: made})
+    some = water.rows(np.arange(len(field.buoy.time))[::40])
+    found = predict_by_sensor_baselines(twin, new, name, some, TRAINING)
+    true = 2.0 * lower.predict(some.features(("current",))).mean + 1.0
+    spread = float(np.std(true))
+    for method in ("AR1", "linear"):
+        assert np.sqrt(np.mean((found[method] - true) ** 2)) < 0.1 * spread
+    assert all(np.isfinite(each).all() for each in found.values())
