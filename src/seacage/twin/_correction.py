@@ -32,8 +32,8 @@ PerPair = Float[np.ndarray, " pair"]
 GAIN_SD = 0.5  # how far from 1 a gain is expected: the simulations may be half wrong, seldom more
 HOUR = 3_600_000_000  # [us]
 
-# Least share of the fitted noise variance that is the cage's and not the instrument's. Where the
-# errors are as small as the instrument's noise, the two cannot be separated; too wide is better.
+# Least share of the fitted noise variance that is the cage's and not the instrument's. Where errors
+# are as small as the instrument's noise, they cannot be told apart; too wide is better.
 LEAST_SHARE = 0.5
 
 # Models of what a gain leaves, which are averaged (decision 76)
@@ -83,11 +83,10 @@ class Spread:
 class Correction:
     """Level 2 of a sensor: its reading, from the water and the prediction of level 1.
 
-    A NARGP alone returns to the mean of its training data in water unlike that of the training
-    window. A shackle's window is half a day, so its correction has to extrapolate: the gain
-    does, and an average of NARGP, AR1 and a linear regression is fitted to the remainder. All
-    this is averaged with level 1 as it is, each weighted by how probable it finds blocks of
-    readings that are held out. A window of minutes has no blocks: NARGP has all the weight.
+    A NARGP alone returns to the mean of its training data in water unlike that of the window. A
+    shackle's is half a day, so that its correction extrapolates: the gain does, and an average of
+    NARGP, AR1 and a linear regression is fitted to the rest. That is averaged with level 1. Weights
+    follow how probable each finds held-out blocks of readings; minutes have none, and NARGP alone.
     """
 
     gain: float  # change of the reading per change of level 1 [-]
@@ -110,8 +109,9 @@ class Correction:
         error = np.concatenate([(pairs.value - low)[out] for out, _ in folds.each()])
         alone = log_density(error, np.zeros_like(error), np.full_like(error, np.mean(error**2)))
         density = np.stack([rest.fold_density(above, folds), alone])
-        weight, _ = pseudo_bma(density, folds.independent)
-        return cls(gain=gain, weight=float(weight), rest=rest)
+        level_2, level_1 = pseudo_bma(density, folds.independent).tolist()
+        # Beforehand level 1 counts as much as each model of the average.
+        return cls(gain=gain, weight=level_2 / (level_2 + level_1 / len(REST_MODELS)), rest=rest)
 
     def beats_level_1(self, pairs: Pairs, low: PerPair) -> bool:
         """Whether it predicts its training readings better than level 1, and not by chance.
