@@ -315,7 +315,7 @@ class FittedGaussianProcess:
         }
         if self.line.any():
             arrays["line"] = self.line
-        if np.any(self.factor != 1.0):
+        if len(set(kernels)) > 1:
             arrays["factor"] = self.factor
         anchor = first.noise.anchor
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
@@ -341,7 +341,10 @@ class FittedGaussianProcess:
             lambda: array(arrays, "anchor", None, width),
             outputs=outputs,
         )
-        kernels = kernels * len(share) if len(kernels) == 1 else kernels
+        # Members of one kernel have no factors, and models saved before there was an average.
+        several = len(kernels) > 1
+        factor = array(arrays, "factor", len(share)) if several else np.ones(len(share))
+        kernels = kernels if several else kernels * len(share)
         sizes = [kernel.size(width) for kernel in kernels]
         parameters = array(arrays, "log_parameters", len(share), max(sizes, default=None))
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
@@ -368,10 +371,7 @@ class FittedGaussianProcess:
             line=array(arrays, "line", width, outputs)
             if settings.get("about_line", False)
             else np.zeros((width, outputs)),
-            # And those of one kernel without factors.
-            factor=array(arrays, "factor", len(share))
-            if "factor" in arrays
-            else np.ones(len(share)),
+            factor=factor,
         )
 
     def _standardise(self, x: RowFeature, *, what: str) -> RowFeature:
