@@ -40,7 +40,7 @@ LEAST_SHARE = 0.5
 REST_MODELS: tuple[ModelName, ...] = ("nargp", "ar1", "regression")
 # Blocks of readings that are held out to weigh them [s]: days where there are four, else two hours
 # without the half hour on either side
-DAY, SHORT = 86400.0, (7200.0, 1800.0)
+DAY, TWO_HOURS = 86400.0, (7200.0, 1800.0)
 LEAST_DAYS, LEAST_BLOCKS = 4, 2
 HALF_TIDE = 22357.0  # [s] whose readings are worth a single independent one
 
@@ -224,7 +224,7 @@ class Corrections:
 def time_folds(time: Shaped[np.ndarray, " pair"]) -> Folds:
     """Whole days, held out in turn, or blocks of two hours where there are not four days."""
     second = time.astype("datetime64[us]").astype(np.int64) / 1e6
-    length, gap = (DAY, 0.0) if np.ptp(second) >= LEAST_DAYS * DAY else SHORT
+    length, gap = (DAY, 0.0) if np.ptp(second) >= LEAST_DAYS * DAY else TWO_HOURS
     return Folds.of_time(second, length=length, gap=gap, memory=HALF_TIDE)
 
 

@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from seacage.surrogates import conformal_factor, variance_components
-from seacage.twin._correction import LEAST_SHARE, Correction, Spread
+from seacage.twin._correction import DAY, LEAST_SHARE, Correction, Spread
 from seacage.twin._pairs import Pairs
 from seacage.twin._training._data import CageTraining
 from seacage.twin._training._held_out import (
-    DAY,
     HeldOut,
     cross_validate,
     independent_count,

@@ -6,10 +6,10 @@ import numpy as np
 from jaxtyping import Float, Int, Shaped
 
 from seacage.surrogates import ResidualModel
-from seacage.twin._correction import Correction, Spread
+from seacage.twin._correction import DAY, Correction, Spread
 from seacage.twin._pairs import Pairs
 
-DAY, QUARTER_TIDE = 86400.0, 10800.0  # [s]
+QUARTER_TIDE = 10800.0  # [s]
 
 # Readings over so long are counted by days, over a shorter time by quarters of a tide [s]
 LONG = 8.0 * DAY
