@@ -141,7 +141,9 @@ class PostgresDatabase(_session.AbstractDatabase):
     def writing(self) -> Generator[_session.AbstractSession]:
         """Write; the block's end is the commit."""
         with self._translate_errors("takes no samples"):
-            if self._writer.closed:
+            # Cut within a pipeline, a connection may stay in it for good without being closed.
+            if self._writer.info.transaction_status != self._psycopg.pq.TransactionStatus.IDLE:
+                self._writer.close()
                 self._reach()
             with self._writer.transaction():
                 yield PostgresSession(self._writer, self)

@@ -112,6 +112,24 @@ def test_a_connection_that_is_cut_is_made_again(url, pair):
     assert store.samples("ace", limit=9) == [sample(), sample(1)]
 
 
+def test_a_connection_that_a_cut_left_in_its_pipeline_is_made_again(pair):
+    store = pair[0]
+    store.claim("ace")
+    left = store._database._writer
+
+    def cut(session):
+        left.pgconn.enter_pipeline_mode()
+        left.pgconn.send_query_params(b"SELECT 1", None)
+
+    with pytest.raises(StoreError, match="pipeline mode"):
+        store._writer.ask(cut).result(timeout=20)
+    assert not left.closed
+    assert put(store, sample()) == (True,)
+    assert left.closed
+    with pytest.raises(StoreError, match="another process"):
+        pair[1].claim("ace")
+
+
 def test_workers_serve_cages_of_their_own(pair, monkeypatch):
     monkeypatch.setattr("seacage.service._store._store._PATIENCE_S", 0.3)
     for store, cage in zip(pair, ("ace", "ice"), strict=True):
