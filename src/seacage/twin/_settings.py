@@ -41,10 +41,9 @@ class StreamTimeouts:
 class FaultDetectorSettings:
     """Numbers by which the fault detector averages readings and compares hypotheses.
 
-    The defaults were tuned on seeds 0 to 3 of settled virtual fields of cage ``ace``, without
-    waves, and tried on other seeds (``docs/alarms.md``). Where real failures are on record, tune
-    them again. Standard deviations without a unit of their own are in those of the sensor's
-    residual. All numbers are above 0.
+    The defaults were tuned on settled virtual fields of cage ``ace``, without waves
+    (``docs/alarms.md``). Where real failures are on record, tune them again. Standard deviations
+    without a unit of their own are in those of the sensor's residual. All numbers are above 0.
 
     Parameters
     ----------
@@ -152,7 +151,7 @@ class FaultDetectorSettings:
     block_weight: float = 0.6
     evidence_memory: float = 144.0
     active_widening: float = 3.0
-    limit: float = 20.0
+    limit: float = 30.0
     lead: float = 10.0
     lead_blocks: int = 48
     most_limits: float = 2.0

@@ -206,7 +206,7 @@ def test_one_shackle_at_a_corner_says_nothing_about_its_bridles():
 
 def test_a_hole_that_some_sensors_feel_is_the_net_s_and_no_sensor_s():
     felt = np.array([0.35, 0.35, 0.1, 0.0, 0.0, 0.25, 0.3, 0.3])
-    watch = learned().through(quiet(25, 2.0), lost=felt)
+    watch = learned().through(quiet(25, 3.0), lost=felt)
     assert watch.raised == ["net.net"]
 
 

@@ -48,13 +48,13 @@ def test_a_twin_read_back_is_the_same_twin(written):
 
 
 def test_settings_of_the_fault_detector_are_read_back(tmp_path):
-    settings = FaultDetectorSettings(limit=30.0, least_sensors=4)
+    settings = FaultDetectorSettings(limit=25.0, least_sensors=4)
     replace(stand_in_twin(), fault_detector=settings).write(tmp_path / "twin")
     assert Twin.read(tmp_path / "twin").fault_detector == settings
 
 
 def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(written, tmp_path):
-    replace(stand_in_twin(), fault_detector=FaultDetectorSettings(limit=30.0)).write(tmp_path / "t")
+    replace(stand_in_twin(), fault_detector=FaultDetectorSettings(limit=25.0)).write(tmp_path / "t")
     versions = [
         json.loads((folder / "model.json").read_text())["version"]
         for folder in (written, tmp_path / "t")

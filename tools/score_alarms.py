@@ -1,0 +1,311 @@
+"""How often the fault detector alarms for nothing on cages of the family, and how soon it finds.
+
+    python tools/score_alarms.py CAMPAIGN OUT --truths 1-10 [--water coastal] [--days 365]
+
+CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
+virtual field whose sensors have noise, gains and biases but no faults, cleaned as the family draws
+it for 48 days, over and over. The twin trains on the first 25 days (shackles on half a day of
+them); from then on all sensors live, and the fault detector and its alarms see the residuals of
+each half hour. Whatever it raises there is false, but for ``net.net`` within two weeks of a
+cleaning, which no sensor can tell from a hole. Then, from the seventh day on, a fault at a time.
+Fields and residuals are kept in OUT; stopped, it goes on. Virtual field.
+"""
+
+import argparse
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from functools import partial
+from typing import Any
+
+import numpy as np
+from _family_fields import START, Water, options_for
+from scipy.stats import chi2
+
+from seacage.cage import Cage
+from seacage.campaigns import TruthParameters, generated_current, virtual_field
+from seacage.records import FieldRecord, Record, read_campaign
+from seacage.twin import AlarmPolicy, FaultDetectorSettings, Metocean, Training, Twin, train
+from seacage.twin._alarms._alarm import Action, Alarm
+from seacage.twin._alarms._lifecycle import evaluate
+from seacage.twin._faults import FaultDetector
+from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._faults._sensor import SensorMonitor
+
+TRAINED, SHACKLES = 25.0, (5.0, 5.5)  # days: the last that trains, and those of the shackles
+CLEANED_EVERY = 48.0  # days after which the family's cleanings come again
+READ_EVERY = 600.0  # s
+QUIET_DAYS, WATCHED_DAYS = 7.0, 14.0  # before a fault, and for how long it is looked for
+AFTER_CLEANING = 14.0  # days
+DAY = 86400.0
+BASE: list[Twin] = []  # of a process: the twin that has learned the low fidelity
+SETTINGS = FaultDetectorSettings()
+POLICY = AlarmPolicy.default(Cage.named("ace"))
+
+
+def main() -> None:
+    """Train and watch, cage by cage, and sum up."""
+    options = options_for(__doc__, truths="1-10")
+    options.add_argument("--water", choices=("tame", "coastal"), action="append")
+    options.add_argument("--days", type=float, default=365.0)
+    given = options.parse_args()
+    campaign = read_campaign(given.campaign)
+    cage = Cage.from_toml(campaign.cage_toml)
+    base = train(cage, campaign, training=Training(restarts=0))
+    for water in given.water or ("tame", "coastal"):
+        score = partial(_score, water, given)
+        # Twins are inherited, not pickled: their kernels hold functions.
+        with ProcessPoolExecutor(given.workers, initializer=BASE.append, initargs=(base,)) as pool:
+            _sum_up(water, dict(zip(given.truths, pool.map(score, given.truths), strict=True)))
+
+
+def _score(water: Water, given: argparse.Namespace, number: int) -> dict[str, Any]:
+    kept = _kept_residuals(water, given, number)
+    return watched(kept, BASE[0].cage, SETTINGS)
+
+
+def _kept_residuals(water: Water, given: argparse.Namespace, number: int) -> dict[str, np.ndarray]:
+    """Residuals of a cage by half hours, once made."""
+    kept, days = given.out / f"{water}-{number}.npz", TRAINED + given.days
+    if not kept.is_file():
+        hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
+        hidden = _without_faults(hidden, days)
+        (base,) = BASE
+        field = virtual_field(
+            base.cage,
+            generated_current(number, start=START, days=days),
+            hidden=hidden,
+            seed=number,
+            method="settle",
+            every_s=READ_EVERY,
+            kept=given.out / f"{water}-{number}",
+            workers=1,
+        ).record
+        twin = train(base.cage, None, _taught(field), base=base, training=Training(restarts=1))
+        found = _residuals(twin, field)
+        found["cleaned"] = np.array(hidden.fouling.cleaned_days)
+        np.savez(kept, allow_pickle=False, **found)
+    return dict(np.load(kept))
+
+
+def _without_faults(hidden: TruthParameters, days: float) -> TruthParameters:
+    rounds = CLEANED_EVERY * np.arange(int(days / CLEANED_EVERY) + 1)
+    cleaned = np.sort(np.add.outer(rounds, hidden.fouling.cleaned_days).ravel())
+    none = dict.fromkeys(("lost_share", "gaps_per_week", "spikes_per_week"), 0.0)
+    none |= dict.fromkeys(("stuck_per_week", "radio_losses_per_week"), 0.0)
+    return replace(
+        hidden,
+        fouling=replace(hidden.fouling, cleaned_days=tuple(cleaned.tolist())),
+        shackle=replace(hidden.shackle, windows=((0.0, 1e9),)),
+        depth=replace(hidden.depth, drift_m_week=0.0),
+        outages=replace(hidden.outages, **none),
+    )
+
+
+def _taught(field: FieldRecord) -> FieldRecord:
+    """What trains: 25 days, of the shackles half a day."""
+    sensors = {
+        name: one.between(*map(_at, SHACKLES if "tension_kn" in one.values else (0.0, TRAINED)))
+        for name, one in field.sensors.items()
+    }
+    return replace(field, buoy=field.buoy.between(_at(0.0), _at(TRAINED)), sensors=sensors)
+
+
+def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
+    """Residuals of each half hour after the training, as the fault detector forms them."""
+    settings, names = twin.fault_detector, twin.sensor_names
+    late = field.sensors[names[0]].time >= field.buoy.time[0] + _span(TRAINED)
+    time = field.sensors[names[0]].time[late]
+    water = Metocean.of_record(field.buoy).rows(
+        np.searchsorted(field.buoy.time, time, side="right") - 1
+    )
+    answer = twin.predict(water)
+    known = answer.valid & answer.in_domain
+    read = np.column_stack([_si(field.sensors[name])[late] for name in names])
+    error = read - answer.sensor.mean
+    number = time.astype("datetime64[s]").astype(int) // int(settings.block_s)
+    rows = {int(one): np.flatnonzero(number == one) for one in np.unique(number[known])}
+    current = np.array(
+        [water.current_velocity[own[known[own]]].mean(axis=0) for own in rows.values()]
+    )
+    here = Metocean.without_waves(current)
+    around = twin.predict(here.joined(here, here.sides(settings.current_step)))
+    _, east, west, north, south = around.sensor.mean.reshape(5, len(rows), -1)
+    gradient = np.stack([east - west, north - south], axis=2) / (2.0 * settings.current_step)
+    return {
+        "number": np.array(list(rows)),
+        "residual": np.array([error[inside].mean(axis=0) for inside in rows.values()]),
+        "std": around.sensor.std[: len(rows)],
+        "own": np.array([twin.models.upper[name].spread.by == "own" for name in names]),
+        "gradient": gradient,
+        "current": current,
+        "tension": around.bridle_tension.mean[: len(rows)],
+        "start": field.buoy.time[:1].astype("datetime64[s]").astype(int),
+    }
+
+
+def blocks_of(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[float, ResidualBlock]:
+    """The blocks by the day of the record at which they end."""
+    share = np.where(kept["own"], SETTINGS.own_share, SETTINGS.carried_share)
+    days = ((kept["number"] + 1) * SETTINGS.block_s - kept["start"]) / DAY
+    return {
+        float(day): ResidualBlock(
+            sensors=cage.sensor_names,
+            received=np.ones(len(share), dtype=bool),
+            residual=kept["residual"][row],
+            own_sd=kept["std"][row] * share,
+            gradient=kept["gradient"][row],
+            current=kept["current"][row],
+            tension=kept["tension"][row],
+        )
+        for row, day in enumerate(days)
+    }
+
+
+@dataclass
+class Watch:
+    """The fault detector and its alarms, block by block."""
+
+    cage: Cage
+    detector: FaultDetector
+    settings: FaultDetectorSettings
+    alarms: dict[str, Alarm]
+
+    def see(self, day: float, block: ResidualBlock) -> Iterator[str]:
+        """Take a block in, and name the alarms that are raised."""
+        active = frozenset(name for name, alarm in self.alarms.items() if alarm.active)
+        self.detector = self.detector.updated(block, self.cage, self.settings, active=active)
+        most = max((value for _, value in self.detector.ranking()), default=0.0)
+        if not active and most < self.settings.limit:
+            return  # nothing is raised, and nothing waits to be cleared
+        for one in self.detector.inputs(self.cage, self.settings):
+            alarm = self.alarms.get(one.alarm, Alarm(name=one.alarm))
+            alarm, lines = evaluate(alarm, one.value, POLICY.limit(one.alarm), _at(day))
+            self.alarms[one.alarm] = alarm
+            yield from (line.alarm for line in lines if line.action is Action.RAISED)
+
+    def copied(self) -> "Watch":
+        """Another that goes its own way from here."""
+        return replace(self, alarms=dict(self.alarms))
+
+
+def watched(
+    kept: Mapping[str, np.ndarray],
+    cage: Cage,
+    settings: FaultDetectorSettings,
+    *,
+    faults: bool = True,
+) -> dict[str, Any]:
+    """What is raised without a fault, and what each fault raises."""
+    blocks = blocks_of(kept, cage)
+    monitors = {name: SensorMonitor() for name in cage.sensor_names}
+    watch = Watch(cage, FaultDetector(monitors=monitors), settings, {})
+    raised, known = list[tuple[str, float]](), None
+    for day, block in blocks.items():
+        if known is None and day >= TRAINED + QUIET_DAYS:
+            known = watch.copied()
+        raised += [(name, round(day, 2)) for name in watch.see(day, block)]
+    assert known is not None
+    late = {day: one for day, one in blocks.items() if day >= TRAINED + QUIET_DAYS}
+    tried = [
+        (fault, row)
+        for fault, kind in FAULTS.items()
+        for row, name in enumerate(cage.sensor_names)
+        if faults and name.startswith(kind)
+    ]
+    return {
+        "days": len(blocks) / 48.0,
+        "raised": raised,
+        "cleaned": [day for day in kept["cleaned"].tolist() if day > TRAINED - AFTER_CLEANING],
+        "faults": [_after_fault(known.copied(), late, *one) for one in tried],
+    }
+
+
+def _shift(fault: str, cage: Cage, block: ResidualBlock, row: int, days: float) -> float:
+    """What a fault adds to a sensor's reading some days after it began [N] or [m]."""
+    if fault == "drift":
+        return 0.1 * days
+    if fault == "offset":
+        return 3.0 * float(block.own_sd[row])
+    (bridle,) = (one.bridle for one in cage.shackles if one.name == cage.sensor_names[row])
+    return -float(block.tension[bridle])
+
+
+# By fault, how the names of the sensors begin that have it
+FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
+
+
+def _after_fault(
+    watch: Watch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
+) -> dict[str, Any]:
+    sensor = watch.cage.sensor_names[row]
+    right, first = f"irregular.{sensor}", next(iter(blocks))
+    shown: list[tuple[str, float]] = []
+    for day, block in blocks.items():
+        if day - first > WATCHED_DAYS:
+            break
+        residual = block.residual.copy()
+        residual[row] += _shift(fault, watch.cage, block, row, day - first)
+        raised = watch.see(day, replace(block, residual=residual))
+        shown += [(name, round(day - first, 2)) for name in raised]
+        if any(name == right for name, _ in shown):
+            break
+    return {"fault": fault, "sensor": sensor, "raised": shown}
+
+
+def _at(day: float) -> datetime:
+    return START + timedelta(days=day)
+
+
+def _span(days: float) -> np.timedelta64:
+    return np.timedelta64(int(days * DAY), "s")
+
+
+def _si(record: Record) -> np.ndarray:
+    ((key, values),) = record.values.items()
+    return values * (1e3 if key == "tension_kn" else 1.0)
+
+
+def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
+    years, false, cleaned = 0.0, Counter[str](), 0
+    for number, one in found.items():
+        own = Counter(name for name, day in one["raised"] if not _by_cleaning(name, day, one))
+        print(f"{water}, truth {number}: {one['days']:.0f} days, {dict(own) or 'none'}")
+        years, false = years + one["days"] / 365.0, false + own
+        cleaned += len(one["raised"]) - own.total()
+    low, high = _poisson_interval(false.total())
+    print(
+        f"{water}: {false.total()} false alarms in {years:.1f} cage-years, "
+        f"{false.total() / years:.2f} a year [{low / years:.2f}, {high / years:.2f}]; "
+        f"{cleaned} of the net after a cleaning (virtual field)"
+    )
+    for fault in FAULTS:
+        each = [one for of in found.values() for one in of["faults"] if one["fault"] == fault]
+        days = [_delay(one) for one in each]
+        some = [one for one in days if one is not None]
+        print(
+            f"  {fault}: {len(some)} of {len(each)}, median {np.median(some or [np.nan]):.2f} days"
+        )
+
+
+def _by_cleaning(alarm: str, day: float, one: Mapping[str, Any]) -> bool:
+    """Whether it speaks of the drag that a cleaning took."""
+    return alarm == "net.net" and any(0.0 <= day - c <= AFTER_CLEANING for c in one["cleaned"])
+
+
+def _delay(one: Mapping[str, Any]) -> float | None:
+    """Days to the right alarm; None without one."""
+    right = f"irregular.{one['sensor']}"
+    return next((day for name, day in one["raised"] if name == right), None)
+
+
+def _poisson_interval(count: int) -> tuple[float, float]:
+    """95 % interval of an expected number. Source: Garwood (1936)."""
+    low = 0.5 * float(chi2.ppf(0.025, 2 * count)) if count else 0.0
+    return low, 0.5 * float(chi2.ppf(0.975, 2 * count + 2))
+
+
+if __name__ == "__main__":
+    main()
