@@ -115,7 +115,9 @@ def _taught(field: FieldRecord) -> FieldRecord:
 
 def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     """Residuals of each half hour after the training, as the fault detector forms them."""
-    settings, names = twin.fault_detector, twin.sensor_names
+    settings = twin.fault_detector
+    names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
+    columns = [twin.sensor_names.index(name) for name in names]
     late = field.sensors[names[0]].time >= field.buoy.time[0] + _span(TRAINED)
     time = field.sensors[names[0]].time[late]
     water = Metocean.of_record(field.buoy).rows(
@@ -124,7 +126,7 @@ def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     answer = twin.predict(water)
     known = answer.valid & answer.in_domain
     read = np.column_stack([_si(field.sensors[name])[late] for name in names])
-    error = read - answer.sensor.mean
+    error = read - answer.sensor.mean[:, columns]
     number = time.astype("datetime64[s]").astype(int) // int(settings.block_s)
     rows = {int(one): np.flatnonzero(number == one) for one in np.unique(number[known])}
     current = np.array(
@@ -132,12 +134,13 @@ def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     )
     here = Metocean.without_waves(current)
     around = twin.predict(here.joined(here, here.sides(settings.current_step)))
-    _, east, west, north, south = around.sensor.mean.reshape(5, len(rows), -1)
+    _, east, west, north, south = around.sensor.mean[:, columns].reshape(5, len(rows), -1)
     gradient = np.stack([east - west, north - south], axis=2) / (2.0 * settings.current_step)
     return {
+        "sensors": np.array(names),
         "number": np.array(list(rows)),
         "residual": np.array([error[inside].mean(axis=0) for inside in rows.values()]),
-        "std": around.sensor.std[: len(rows)],
+        "std": around.sensor.std[: len(rows), columns],
         "own": np.array([twin.models.upper[name].spread.by == "own" for name in names]),
         "gradient": gradient,
         "current": current,
@@ -146,13 +149,13 @@ def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     }
 
 
-def blocks_of(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[float, ResidualBlock]:
+def blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
     """The blocks by the day of the record at which they end."""
     share = np.where(kept["own"], SETTINGS.own_share, SETTINGS.carried_share)
     days = ((kept["number"] + 1) * SETTINGS.block_s - kept["start"]) / DAY
     return {
         float(day): ResidualBlock(
-            sensors=cage.sensor_names,
+            sensors=tuple(kept["sensors"].tolist()),
             received=np.ones(len(share), dtype=bool),
             residual=kept["residual"][row],
             own_sd=kept["std"][row] * share,
@@ -199,8 +202,8 @@ def watched(
     faults: bool = True,
 ) -> dict[str, Any]:
     """What is raised without a fault, and what each fault raises."""
-    blocks = blocks_of(kept, cage)
-    monitors = {name: SensorMonitor() for name in cage.sensor_names}
+    blocks, names = blocks_of(kept), kept["sensors"].tolist()
+    monitors = {name: SensorMonitor() for name in names}
     watch = Watch(cage, FaultDetector(monitors=monitors), settings, {})
     raised, known = list[tuple[str, float]](), None
     for day, block in blocks.items():
@@ -212,7 +215,7 @@ def watched(
     tried = [
         (fault, row)
         for fault, kind in FAULTS.items()
-        for row, name in enumerate(cage.sensor_names)
+        for row, name in enumerate(names)
         if faults and name.startswith(kind)
     ]
     return {
@@ -229,7 +232,7 @@ def _shift(fault: str, cage: Cage, block: ResidualBlock, row: int, days: float) 
         return 0.1 * days
     if fault == "offset":
         return 3.0 * float(block.own_sd[row])
-    (bridle,) = (one.bridle for one in cage.shackles if one.name == cage.sensor_names[row])
+    (bridle,) = (one.bridle for one in cage.shackles if one.name == block.sensors[row])
     return -float(block.tension[bridle])
 
 
@@ -240,8 +243,9 @@ FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
 def _after_fault(
     watch: Watch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
 ) -> dict[str, Any]:
-    sensor = watch.cage.sensor_names[row]
-    right, first = f"irregular.{sensor}", next(iter(blocks))
+    first, block = next(iter(blocks.items()))
+    sensor = block.sensors[row]
+    right = f"irregular.{sensor}"
     shown: list[tuple[str, float]] = []
     for day, block in blocks.items():
         if day - first > WATCHED_DAYS:
