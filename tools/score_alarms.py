@@ -21,12 +21,12 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from _family_fields import START, Water, options_for
+from _family_fields import SCORED_FROM, START, Water, options_for, values_at
 from scipy.stats import chi2
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, generated_current, virtual_field
-from seacage.records import FieldRecord, Record, read_campaign
+from seacage.records import FieldRecord, read_campaign
 from seacage.twin import AlarmPolicy, FaultDetectorSettings, Metocean, Training, Twin, train
 from seacage.twin._alarms._alarm import Action, Alarm
 from seacage.twin._alarms._lifecycle import evaluate
@@ -34,7 +34,7 @@ from seacage.twin._faults import FaultDetector
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._sensor import SensorMonitor
 
-TRAINED, SHACKLES = 25.0, (5.0, 5.5)  # days: the last that trains, and those of the shackles
+SHACKLES = (5.0, 5.5)  # days that train these; the depth sensors train until ``SCORED_FROM``
 CLEANED_EVERY = 48.0  # days after which the family's cleanings come again
 READ_EVERY = 600.0  # s
 QUIET_DAYS, WATCHED_DAYS = 7.0, 14.0  # before a fault, and for how long it is looked for
@@ -42,7 +42,7 @@ AFTER_CLEANING = 14.0  # days
 DAY = 86400.0
 BASE: list[Twin] = []  # of a process: the twin that has learned the low fidelity
 SETTINGS = FaultDetectorSettings()
-POLICY = AlarmPolicy.default(Cage.named("ace"))
+POLICY = AlarmPolicy.default()
 
 
 def main() -> None:
@@ -63,12 +63,13 @@ def main() -> None:
 
 def _score(water: Water, given: argparse.Namespace, number: int) -> dict[str, Any]:
     kept = _kept_residuals(water, given, number)
-    return watched(kept, BASE[0].cage, SETTINGS)
+    return _watched(kept, BASE[0].cage)
 
 
 def _kept_residuals(water: Water, given: argparse.Namespace, number: int) -> dict[str, np.ndarray]:
     """Residuals of a cage by half hours, once made."""
-    kept, days = given.out / f"{water}-{number}.npz", TRAINED + given.days
+    days = SCORED_FROM + given.days
+    kept = given.out / f"{water}-{number}, {days:g} days.npz"
     if not kept.is_file():
         hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
         hidden = _without_faults(hidden, days)
@@ -107,35 +108,34 @@ def _without_faults(hidden: TruthParameters, days: float) -> TruthParameters:
 def _taught(field: FieldRecord) -> FieldRecord:
     """What trains: 25 days, of the shackles half a day."""
     sensors = {
-        name: one.between(*map(_at, SHACKLES if "tension_kn" in one.values else (0.0, TRAINED)))
+        name: one.between(*map(_at, SHACKLES if "tension_kn" in one.values else (0.0, SCORED_FROM)))
         for name, one in field.sensors.items()
     }
-    return replace(field, buoy=field.buoy.between(_at(0.0), _at(TRAINED)), sensors=sensors)
+    return replace(field, buoy=field.buoy.between(_at(0.0), _at(SCORED_FROM)), sensors=sensors)
 
 
 def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     """Residuals of each half hour after the training, as the fault detector forms them."""
-    settings = twin.fault_detector
     names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
     columns = [twin.sensor_names.index(name) for name in names]
-    late = field.sensors[names[0]].time >= field.buoy.time[0] + _span(TRAINED)
-    time = field.sensors[names[0]].time[late]
+    time = field.sensors[names[0]].time
+    time = time[time >= field.buoy.time[0] + np.timedelta64(int(SCORED_FROM * DAY), "s")]
     water = Metocean.of_record(field.buoy).rows(
         np.searchsorted(field.buoy.time, time, side="right") - 1
     )
     answer = twin.predict(water)
     known = answer.valid & answer.in_domain
-    read = np.column_stack([_si(field.sensors[name])[late] for name in names])
+    read = np.column_stack([values_at(field.sensors[name], time) for name in names])
     error = read - answer.sensor.mean[:, columns]
-    number = time.astype("datetime64[s]").astype(int) // int(settings.block_s)
+    number = time.astype("datetime64[s]").astype(int) // int(SETTINGS.block_s)
     rows = {int(one): np.flatnonzero(number == one) for one in np.unique(number[known])}
     current = np.array(
         [water.current_velocity[own[known[own]]].mean(axis=0) for own in rows.values()]
     )
     here = Metocean.without_waves(current)
-    around = twin.predict(here.joined(here, here.sides(settings.current_step)))
+    around = twin.predict(here.joined(here, here.sides(SETTINGS.current_step)))
     _, east, west, north, south = around.sensor.mean[:, columns].reshape(5, len(rows), -1)
-    gradient = np.stack([east - west, north - south], axis=2) / (2.0 * settings.current_step)
+    gradient = np.stack([east - west, north - south], axis=2) / (2.0 * SETTINGS.current_step)
     return {
         "sensors": np.array(names),
         "number": np.array(list(rows)),
@@ -149,7 +149,7 @@ def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     }
 
 
-def blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
+def _blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
     """The blocks by the day of the record at which they end."""
     share = np.where(kept["own"], SETTINGS.own_share, SETTINGS.carried_share)
     days = ((kept["number"] + 1) * SETTINGS.block_s - kept["start"]) / DAY
@@ -173,17 +173,16 @@ class Watch:
 
     cage: Cage
     detector: FaultDetector
-    settings: FaultDetectorSettings
     alarms: dict[str, Alarm]
 
     def see(self, day: float, block: ResidualBlock) -> Iterator[str]:
         """Take a block in, and name the alarms that are raised."""
         active = frozenset(name for name, alarm in self.alarms.items() if alarm.active)
-        self.detector = self.detector.updated(block, self.cage, self.settings, active=active)
+        self.detector = self.detector.updated(block, self.cage, SETTINGS, active=active)
         most = max((value for _, value in self.detector.ranking()), default=0.0)
-        if not active and most < self.settings.limit:
+        if not active and most < SETTINGS.limit:
             return  # nothing is raised, and nothing waits to be cleared
-        for one in self.detector.inputs(self.cage, self.settings):
+        for one in self.detector.inputs(self.cage, SETTINGS):
             alarm = self.alarms.get(one.alarm, Alarm(name=one.alarm))
             alarm, lines = evaluate(alarm, one.value, POLICY.limit(one.alarm), _at(day))
             self.alarms[one.alarm] = alarm
@@ -194,35 +193,30 @@ class Watch:
         return replace(self, alarms=dict(self.alarms))
 
 
-def watched(
-    kept: Mapping[str, np.ndarray],
-    cage: Cage,
-    settings: FaultDetectorSettings,
-    *,
-    faults: bool = True,
-) -> dict[str, Any]:
-    """What is raised without a fault, and what each fault raises."""
-    blocks, names = blocks_of(kept), kept["sensors"].tolist()
+def _watched(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[str, Any]:
+    """What is raised without a fault, and the days until each fault is."""
+    blocks, names = _blocks_of(kept), kept["sensors"].tolist()
     monitors = {name: SensorMonitor() for name in names}
-    watch = Watch(cage, FaultDetector(monitors=monitors), settings, {})
+    watch = Watch(cage, FaultDetector(monitors=monitors), {})
     raised, known = list[tuple[str, float]](), None
     for day, block in blocks.items():
-        if known is None and day >= TRAINED + QUIET_DAYS:
+        if known is None and day >= SCORED_FROM + QUIET_DAYS:
             known = watch.copied()
         raised += [(name, round(day, 2)) for name in watch.see(day, block)]
     assert known is not None
-    late = {day: one for day, one in blocks.items() if day >= TRAINED + QUIET_DAYS}
-    tried = [
-        (fault, row)
-        for fault, kind in FAULTS.items()
-        for row, name in enumerate(names)
-        if faults and name.startswith(kind)
-    ]
+    late = {day: one for day, one in blocks.items() if day >= SCORED_FROM + QUIET_DAYS}
     return {
         "days": len(blocks) / 48.0,
         "raised": raised,
-        "cleaned": [day for day in kept["cleaned"].tolist() if day > TRAINED - AFTER_CLEANING],
-        "faults": [_after_fault(known.copied(), late, *one) for one in tried],
+        "cleaned": kept["cleaned"].tolist(),
+        "delays": {
+            fault: [
+                _delay(known.copied(), late, fault, row)
+                for row, name in enumerate(names)
+                if name.startswith(kind)
+            ]
+            for fault, kind in FAULTS.items()
+        },
     }
 
 
@@ -240,36 +234,24 @@ def _shift(fault: str, cage: Cage, block: ResidualBlock, row: int, days: float) 
 FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
 
 
-def _after_fault(
+def _delay(
     watch: Watch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
-) -> dict[str, Any]:
-    first, block = next(iter(blocks.items()))
-    sensor = block.sensors[row]
-    right = f"irregular.{sensor}"
-    shown: list[tuple[str, float]] = []
+) -> float | None:
+    """Days until a fault of a sensor raises its alarm; None where none is in time."""
+    first = next(iter(blocks))
     for day, block in blocks.items():
         if day - first > WATCHED_DAYS:
             break
         residual = block.residual.copy()
         residual[row] += _shift(fault, watch.cage, block, row, day - first)
-        raised = watch.see(day, replace(block, residual=residual))
-        shown += [(name, round(day - first, 2)) for name in raised]
-        if any(name == right for name, _ in shown):
-            break
-    return {"fault": fault, "sensor": sensor, "raised": shown}
+        raised = list(watch.see(day, replace(block, residual=residual)))
+        if f"irregular.{block.sensors[row]}" in raised:
+            return day - first
+    return None
 
 
 def _at(day: float) -> datetime:
     return START + timedelta(days=day)
-
-
-def _span(days: float) -> np.timedelta64:
-    return np.timedelta64(int(days * DAY), "s")
-
-
-def _si(record: Record) -> np.ndarray:
-    ((key, values),) = record.values.items()
-    return values * (1e3 if key == "tension_kn" else 1.0)
 
 
 def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
@@ -286,23 +268,15 @@ def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
         f"{cleaned} of the net after a cleaning (virtual field)"
     )
     for fault in FAULTS:
-        each = [one for of in found.values() for one in of["faults"] if one["fault"] == fault]
-        days = [_delay(one) for one in each]
-        some = [one for one in days if one is not None]
-        print(
-            f"  {fault}: {len(some)} of {len(each)}, median {np.median(some or [np.nan]):.2f} days"
-        )
+        delays = [delay for one in found.values() for delay in one["delays"][fault]]
+        some = [one for one in delays if one is not None]
+        middle = np.median(some or [np.nan])
+        print(f"  {fault}: {len(some)} of {len(delays)}, median {middle:.2f} days")
 
 
 def _by_cleaning(alarm: str, day: float, one: Mapping[str, Any]) -> bool:
     """Whether it speaks of the drag that a cleaning took."""
     return alarm == "net.net" and any(0.0 <= day - c <= AFTER_CLEANING for c in one["cleaned"])
-
-
-def _delay(one: Mapping[str, Any]) -> float | None:
-    """Days to the right alarm; None without one."""
-    right = f"irregular.{one['sensor']}"
-    return next((day for name, day in one["raised"] if name == right), None)
 
 
 def _poisson_interval(count: int) -> tuple[float, float]:
