@@ -10,7 +10,8 @@ export function listenForKeys(keys) {
     if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
     if (document.querySelector("dialog[open]")) return;
     const { target } = event;
-    if (target.closest?.(WRITES)) return;
+    // A field of a dialog that has just closed has the keys until the page is drawn again.
+    if (target.closest?.(WRITES)?.checkVisibility()) return;
     // A space on a button presses the button.
     if (event.key === " " && target.closest?.(PRESSES)) return;
     const act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
