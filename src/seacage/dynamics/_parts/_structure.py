@@ -1,11 +1,13 @@
 """A structure of any topology as the solver sees it."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.cage import Section, Structure, mooring_lines
+from seacage.cage import Line, Ring, Section, Structure, Tie, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
 from seacage.dynamics._parts._assembly import (
     Assembly,
@@ -107,55 +109,47 @@ def _members(structure: Structure) -> list[_Member]:
     return [*_rings(structure), *_ties(structure), *_lines(structure)]
 
 
-def _rings(structure: Structure) -> list[_Member]:
-    members = []
+def _rings(structure: Structure) -> Iterator[_Member]:
     for index, ring in enumerate(structure.ring):
         if ring.section:
-            section, nodes = structure.section_of(ring), structure.ring_nodes(index)
-            ends = np.column_stack([nodes, np.roll(nodes, -1)])
-            length = _span(structure, ends)
-            pushed = section.is_pipe
-            members.append(_Member(section=section, ends=ends, length=length, pushed=pushed))
-    return members
+            nodes = structure.ring_nodes(index)
+            yield _member(structure, ring, np.column_stack([nodes, np.roll(nodes, -1)]))
 
 
-def _ties(structure: Structure) -> list[_Member]:
-    members = []
+def _ties(structure: Structure) -> Iterator[_Member]:
     for index, tie in enumerate(structure.tie):
-        nodes, section = structure.tie_nodes(index), structure.section_of(tie)
+        nodes, ropes = structure.tie_nodes(index), tie.kind == "ropes"
         ends = np.stack([nodes[:, :-1], nodes[:, 1:]], axis=-1).reshape(-1, 2)
-        given = np.full(len(ends), tie.length / tie.segments)
-        length = given if tie.length else _span(structure, ends)
-        pushed = section.is_pipe or tie.kind != "ropes"
-        each = tie.segments if tie.kind == "ropes" else 0
-        members.append(_Member(section=section, ends=ends, length=length, pushed=pushed, each=each))
+        each = tie.segments if ropes else 0
+        given = tie.length / tie.segments
+        yield _member(structure, tie, ends, given, pushed=not ropes, each=each)
         if tie.kind == "braces":
             upper, lower = nodes[:, 0], nodes[:, -1]
-            aslant = np.vstack(
-                [
-                    np.column_stack([upper, np.roll(lower, -1)]),
-                    np.column_stack([upper, np.roll(lower, 1)]),
-                ]
-            )
-            span = _span(structure, aslant)
-            members.append(
-                _Member(section=section, ends=aslant, length=span, pushed=True, weighs=False)
-            )
-    return members
+            aslant = [np.column_stack([upper, np.roll(lower, n)]) for n in (-1, 1)]
+            yield _member(structure, tie, np.vstack(aslant), pushed=True, weighs=False)
 
 
-def _lines(structure: Structure) -> list[_Member]:
-    members = []
+def _lines(structure: Structure) -> Iterator[_Member]:
     for index, line in enumerate(structure.line):
-        nodes, section = structure.line_nodes(index), structure.section_of(line)
+        nodes = structure.line_nodes(index)
         ends = np.column_stack([nodes[:-1], nodes[1:]])
-        given = np.full(len(ends), line.length / line.segments)
-        length = given if line.length else _span(structure, ends)
-        pushed = section.is_pipe
-        members.append(
-            _Member(section=section, ends=ends, length=length, pushed=pushed, is_line=True)
-        )
-    return members
+        yield _member(structure, line, ends, line.length / line.segments, is_line=True)
+
+
+def _member(
+    structure: Structure,
+    part: Ring | Tie | Line,
+    ends: Int[np.ndarray, "bar 2"],
+    given: float = 0.0,
+    *,
+    pushed: bool = False,
+    **kind: Any,
+) -> _Member:
+    """Bars of a part's section, as long as given [m] or, at 0, as built."""
+    section = structure.section_of(part)
+    length = np.full(len(ends), given) if given else _span(structure, ends)
+    bears = pushed or section.is_pipe
+    return _Member(section=section, ends=ends, length=length, pushed=bears, **kind)
 
 
 def _first_bars(members: list[_Member], first: int, *, is_line: bool) -> Int[np.ndarray, " line"]:
@@ -246,8 +240,7 @@ def _panels(structure: Structure, index: int) -> Panels:
     """
     net, position = structure.net[index], structure.design_position
     twine, corners = structure.twine_of(net), structure.net_panels(index)
-    row, chord = structure.design_net(index)
-    area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
+    area = _knitted_area(structure, index)
     folds = np.maximum(area / panel_area(position, corners), 1.0)
     cover = twine.diameter / twine.half_mesh
     solidity = np.minimum(1.0 - (1.0 - cover) * (1.0 - cover * folds), MOST_SOLIDITY)
@@ -270,6 +263,12 @@ def _panels(structure: Structure, index: int) -> Panels:
     )
 
 
+def _knitted_area(structure: Structure, index: int) -> Float[np.ndarray, " panel"]:
+    """Area of a net's panels as they were knitted, folds included [m2]."""
+    row, chord = structure.design_net(index)
+    return np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
+
+
 # Weights and water
 
 
@@ -282,29 +281,28 @@ class _Lumps:
             np.zeros(len(position)) for _ in range(6)
         )
 
-    def put(self, nodes: np.ndarray, mass: np.ndarray, displaced: np.ndarray, added: float) -> None:
-        """Something always under water: its mass and that of the water it displaces [kg]."""
-        np.add.at(self.mass, nodes, mass)
-        np.add.at(self.displaced, nodes, displaced)
-        np.add.at(self.added, nodes, added * displaced)
-        np.add.at(self.weight, nodes, GRAVITY * (displaced - mass))
-
-    def float(
+    def put(
         self,
         nodes: np.ndarray,
         mass: np.ndarray,
         displaced: np.ndarray,
         added: float,
-        box_height: float,
+        box_height: float | None = None,
     ) -> None:
-        """Something that floats, a box centred on its node; the water moves its wet share."""
-        wet = wet_share(self.height[nodes], box_height) * displaced
+        """Something under water: its mass, and that of the water it displaces [kg].
+
+        With the height of a box [m] it floats, centred on its node; the water moves its wet share.
+        """
+        if box_height is None:
+            water, lift = displaced, displaced
+        else:
+            water, lift = wet_share(self.height[nodes], box_height) * displaced, 0.0
+            np.add.at(self.volume, nodes, displaced / WATER_DENSITY)
+            np.add.at(self.waterplane, nodes, displaced / WATER_DENSITY / box_height)
         np.add.at(self.mass, nodes, mass)
-        np.add.at(self.displaced, nodes, wet)
-        np.add.at(self.added, nodes, added * wet)
-        np.add.at(self.weight, nodes, -GRAVITY * mass)
-        np.add.at(self.volume, nodes, displaced / WATER_DENSITY)
-        np.add.at(self.waterplane, nodes, displaced / WATER_DENSITY / box_height)
+        np.add.at(self.displaced, nodes, water)
+        np.add.at(self.added, nodes, added * water)
+        np.add.at(self.weight, nodes, GRAVITY * (lift - mass))
 
     def floats(self) -> Floats:
         """One box for each node that anything floats at."""
@@ -330,21 +328,14 @@ def _lumps(structure: Structure, members: list[_Member]) -> _Lumps:
         section = member.section
         half = np.repeat(member.length / 2.0, 2) * member.weighs
         mass, displaced = section.mass * half, section.displaced_mass * half
-        nodes, added = member.ends.ravel(), section.added_mass_coefficient
-        if section.is_pipe and member.weighs:
-            lumps.float(nodes, mass, displaced, added, section.box_height)
-        else:
-            lumps.put(nodes, mass, displaced, added)
+        box = section.box_height if section.is_pipe and member.weighs else None
+        lumps.put(member.ends.ravel(), mass, displaced, section.added_mass_coefficient, box)
     for index in range(len(structure.net)):
         _put_net(structure, index, lumps)
     for node, point in zip(structure.point_nodes, structure.point, strict=True):
         mass, displaced = np.array([point.mass]), np.array([WATER_DENSITY * point.displaced])
-        if point.displaced > 0.0:
-            lumps.float(
-                np.array([node]), mass, displaced, point.added_mass_coefficient, point.height
-            )
-        else:
-            lumps.put(np.array([node]), mass, displaced, 0.0)
+        box = point.height if point.displaced > 0.0 else None
+        lumps.put(np.array([node]), mass, displaced, point.added_mass_coefficient, box)
     return lumps
 
 
@@ -352,9 +343,8 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     """A net weighs what was knitted, in folds or not."""
     net, corners = structure.net[index], structure.net_panels(index)
     twine = structure.twine_of(net)
-    row, chord = structure.design_net(index)
-    area = np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
-    volume, share = (twine.volume * area)[:, None], corner_shares(corners)
+    volume = (twine.volume * _knitted_area(structure, index))[:, None]
+    share = corner_shares(corners)
     lumps.put(
         corners.ravel(),
         (twine.density * volume * share).ravel(),
