@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._kernel._library import bar_rate, kernel
+from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._kernel._march import motion_of
 from seacage.dynamics._kernel._march_inputs import (
     Ocean,
@@ -28,7 +28,7 @@ def still_force(
     assembly: Assembly, flow: SteadyFlow, position: Float[np.ndarray, "case node 3"]
 ) -> Float[np.ndarray, "case node 3"]:
     """All nodal forces at rest, for at most a vector of cases [N]."""
-    rate = bar_rate(assembly)
+    rate = assembly.bars.rate
     nothing = np.zeros((len(rate), kernel().lanes))
     laned = kernel().to_lanes(position)
     force = np.zeros_like(laned)

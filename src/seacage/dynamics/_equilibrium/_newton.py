@@ -6,7 +6,15 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._parts._assembly import Assembly, Bars, Bends, Cylinders, Panels
+from seacage.dynamics._parts._assembly import (
+    Assembly,
+    Bars,
+    Bends,
+    Cylinders,
+    Panels,
+    direction,
+    span,
+)
 from seacage.dynamics._physics import _loads as loads
 
 Node3 = Float[np.ndarray, "node 3"]
@@ -84,17 +92,16 @@ class _LinearLaw:
 
 
 def _linear_law(bars: Bars, state: Balancing, balance: Balance) -> _LinearLaw:
-    unit, length = _directions(bars, state.position[0])
+    unit, length = direction(state.position[0], bars.ends)
     tension, barrier = state.tension[0], state.barrier[0]
     if state.moved[0] < balance.reach / 30.0:  # else stretched bars would chatter
         taut = ~bars.pushed & (length > bars.length)
         tension = np.where(taut, np.maximum(tension, np.sqrt(barrier)), tension)
-    rate = bars.stiffness / bars.length
     divisor = np.where(bars.pushed, 1.0, tension)
     push = np.where(bars.pushed, 0.0, barrier / divisor)
     share = 1.0 / (1.0 + push / divisor)
-    lack = share * (rate * (length - bars.length) - tension + push)
-    return _LinearLaw(unit=unit, tension=tension, rate=share * rate, lack=lack)
+    lack = share * (bars.rate * (length - bars.length) - tension + push)
+    return _LinearLaw(unit=unit, tension=tension, rate=share * bars.rate, lack=lack)
 
 
 def _slope(
@@ -120,18 +127,11 @@ def _residual(
     return np.array([np.linalg.norm(force[balance.free], axis=1).max()])
 
 
-def _directions(bars: Bars, position: Node3) -> tuple[Float[np.ndarray, "bar 3"], PerBar]:
-    along = position[bars.ends[:, 1]] - position[bars.ends[:, 0]]
-    length = np.linalg.norm(along, axis=1)
-    return along / length[:, None], length
-
-
 def hooke(bars: Bars, position: Node3) -> tuple[PerBar, PerBar]:
     """Spring rate [N/m] and tension [N] of each bar by the true law; a slack one has neither."""
-    rate = bars.stiffness / bars.length
-    tension = rate * (_directions(bars, position)[1] - bars.length)
+    tension = bars.rate * (span(position, bars.ends) - bars.length)
     taut = (tension > 0.0) | bars.pushed
-    return np.where(taut, rate, 0.0), np.where(taut, tension, 0.0)
+    return np.where(taut, bars.rate, 0.0), np.where(taut, tension, 0.0)
 
 
 def tangent(
@@ -165,7 +165,7 @@ def _between(i: np.ndarray, j: np.ndarray, block: Block) -> list[Entries]:
 
 
 def _bars(bars: Bars, position: Node3, rate: PerBar, tension: PerBar) -> list[Entries]:
-    unit, length = _directions(bars, position)
+    unit, length = direction(position, bars.ends)
     across = tension / length
     axial = rate - across
     block = axial[:, None, None] * _outer(unit, unit) + across[:, None, None] * np.eye(3)
@@ -279,8 +279,7 @@ def _dry_slopes(
 def _cylinders(cylinders: Cylinders, flow: loads.SteadyFlow, position: Node3) -> list[Entries]:
     """Stiffness of a pipe's drag F = ½ q w l |v| v on either end, v = u − (u·t) t, as it turns."""
     i, j = cylinders.ends.T
-    along = position[j] - position[i]
-    t = along / np.linalg.norm(along, axis=1, keepdims=True)
+    t, _ = direction(position, cylinders.ends)
     u = flow.direction[0]
     slide = t @ u
     v = u - slide[:, None] * t

@@ -9,7 +9,7 @@ from jaxtyping import Float, Int
 
 from seacage.dynamics._kernel._balance import Balancing
 from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
-from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 
 # Steps of a round of relaxation, rounds before the unfinished regroup, and regroupings
@@ -79,7 +79,7 @@ def relaxation_of(assembly: Assembly, *, tolerance: float) -> Relaxation:
 def _soft_rates(assembly: Assembly) -> Float[np.ndarray, " bar"]:
     """Spring rates to relax with: the net's no stiffer than the shape needs [N/m]."""
     bars = assembly.bars
-    true = bars.stiffness / bars.length
+    true = bars.rate
     straightening = assembly.scales.force / assembly.scales.mesh
     soft = np.minimum(true, SOFTNESS * max(straightening, 1.0))
     soft[bars.pushed] = HOOP_SHARE * true[bars.pushed]
@@ -98,11 +98,9 @@ def _fictitious_mass(
     stiffness = np.zeros(len(assembly.position))
     np.add.at(stiffness, assembly.bars.ends, rate[:, None])
     bends = assembly.bends
-    span = np.linalg.norm(
-        assembly.position[bends.nodes[:, 1]] - assembly.position[bends.nodes[:, 0]], axis=1
-    )
     bending = bends.stiffness + bends.plane_stiffness
-    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bending / span**2)
+    length = span(assembly.position, bends.nodes[:, :2])
+    np.add.at(stiffness, bends.nodes[:, 1], 16.0 * bending / length**2)
     stiffness[assembly.floats.nodes] += assembly.floats.stiffness
     stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
     stiffness[assembly.ground.nodes] += assembly.ground.stiffness

@@ -100,7 +100,7 @@ class Kernel:
         rounds: int,
     ) -> Relaxing:
         """At most ``lanes`` cases, so many rounds nearer to rest."""
-        rate, laned = bar_rate(assembly), self._state(_structs.RelaxingStruct, state)
+        rate, laned = assembly.bars.rate, self._state(_structs.RelaxingStruct, state)
         settings = _structs.RelaxationStruct.filled(
             **_structs.by_name(relaxation), true_rate=rate, rounds=rounds
         )
@@ -126,7 +126,7 @@ class Kernel:
         structs = (
             _structs.PatternStruct.filled(**_structs.by_name(pattern)),
             _structs.BalanceStruct.cast(
-                **_structs.by_name(balance), true_rate=bar_rate(assembly), iterations=iterations
+                **_structs.by_name(balance), true_rate=assembly.bars.rate, iterations=iterations
             ),
             laned,
             self.bench(len(assembly.position), len(assembly.bars.length), pattern),
@@ -186,11 +186,6 @@ def _cases(laned: _structs.Struct, like: State) -> State:
     return type(like)(
         **{name: np.moveaxis(each, -1, 0)[:cases] for name, each in laned.arrays.items()}
     )
-
-
-def bar_rate(assembly: Assembly) -> Float[np.ndarray, " bar"]:
-    """True spring rate of each bar [N/m]."""
-    return assembly.bars.stiffness / assembly.bars.length
 
 
 def parts_of(assembly: Assembly) -> dict[str, Any]:

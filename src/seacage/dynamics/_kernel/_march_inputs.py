@@ -91,7 +91,7 @@ def body_of(assembly: Assembly) -> Struct:
         slender_mass=a.slender.added_mass,
         place=a.position,
         chord=a.chord,
-        bar_rate=bars.stiffness / bars.length,
+        bar_rate=bars.rate,
         bar_damping=bar_damping(bars, a.mass),
         panel_mass=_panel_mass(a),
         cylinder_drag=DYNAMIC / 2.0 * a.cylinders.drag_width,

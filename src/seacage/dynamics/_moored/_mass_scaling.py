@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
-from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._parts._assembly import Assembly, direction
 
 SAFETY = 0.9  # share of the longest stable step that is used [-]
 MOST_ADDED = 4.0  # mass lent to a node, over its own, beyond which a time step is refused [-]
@@ -63,7 +63,8 @@ def _along_pipes(assembly: Assembly) -> Float[np.ndarray, "2 bar"]:
     """Squared cosine between each bar and the pipe at each of its ends, 0 without a pipe [-]."""
     tangent = np.zeros_like(assembly.position)
     tangent[assembly.slender.nodes] = assembly.slender.tangent
-    cosine = np.sum(tangent[assembly.bars.ends] * _directions(assembly)[:, None], axis=-1)
+    unit, _ = direction(assembly.position, assembly.bars.ends)
+    cosine = np.sum(tangent[assembly.bars.ends] * unit[:, None], axis=-1)
     return cosine.T**2
 
 
@@ -75,11 +76,6 @@ def _over_lighter(
     added[assembly.slender.nodes] = assembly.slender.added_mass
     lighter = assembly.mass[nodes] - added[nodes]
     return 1.0 + added[nodes] * along / lighter
-
-
-def _directions(assembly: Assembly) -> Float[np.ndarray, "bar 3"]:
-    along = np.diff(assembly.position[assembly.bars.ends], axis=1)[:, 0]
-    return along / np.linalg.norm(along, axis=1, keepdims=True)
 
 
 def _below(time: float) -> float:
@@ -110,8 +106,10 @@ def _bending(assembly: Assembly) -> Float[np.ndarray, " node"]:
 
 def _stiffness_along(assembly: Assembly, end: int) -> Float[np.ndarray, " bar"]:
     """Stiffness that a bar's end meets along the bar, from all bars that end there [N/m]."""
-    bars, position, unit = assembly.bars, assembly.position, _directions(assembly)
-    rate = bars.stiffness / bars.length
+    bars, position = assembly.bars, assembly.position
+    unit, _ = direction(position, bars.ends)
     matrix = np.zeros((len(position), 3, 3))
-    np.add.at(matrix, bars.ends, (rate[:, None, None] * unit[:, :, None] * unit[:, None])[:, None])
+    np.add.at(
+        matrix, bars.ends, (bars.rate[:, None, None] * unit[:, :, None] * unit[:, None])[:, None]
+    )
     return np.einsum("bx,bxy,by->b", unit, matrix[bars.ends[:, end]], unit)

@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, MooringLines, mooring_lines
-from seacage.conventions import GRAVITY, WATER_DENSITY, InputError
+from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import (
     STEEL_DENSITY,
     LineShape,
@@ -26,8 +26,8 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Slender,
     Springs,
+    direction,
 )
-from seacage.dynamics._parts._structure import SINKING
 
 ROPE_DRAG = 1.2  # cross-flow drag coefficient of a rope, a smooth cylinder's [-]
 
@@ -62,7 +62,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
         weight=weight,
         mass=mass,
         water_mass=water_mass,
-        slender=Slender.joined(base.slender, _slender(cage, base, anchors)),
+        slender=Slender.joined(base.slender, _slender(base, anchors)),
         fixed=np.concatenate([base.fixed, anchors.is_anchor]),
         chord=np.vstack([base.chord, np.zeros((len(anchors.position), 2))]),
         bars=Bars.joined(base.bars, frame, anchors.bars),
@@ -84,11 +84,14 @@ class _AnchorLines:
     position: Float[np.ndarray, "node 3"]
     is_anchor: Bool[np.ndarray, " node"]
     bars: Bars
-    is_rope: Bool[np.ndarray, " bar"]
+    # Of each bar's rope or chain, and of the water that it displaces [kg/m]
+    mass: Float[np.ndarray, " bar"]
+    displaced: Float[np.ndarray, " bar"]
 
 
 def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
-    length, stiffness = segments(cage.anchor_lines)
+    parts = cage.anchor_lines
+    length, stiffness = segments(parts)
     directions, corners = _directions(cage)
     count, each = len(directions), len(length)
     along = shape.position[1:, 0]
@@ -107,11 +110,16 @@ def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
         np.tile(stiffness, count),
         damping_ratio=cage.netting.damping_ratio,
     )
+    # a rope weighs nothing in water: with what it holds between its strands, it is as heavy
+    rope, chain = WATER_DENSITY * np.pi / 4.0 * parts.rope_diameter**2, parts.chain_mass
+    mass = np.where(is_rope(parts), rope, chain)
+    displaced = np.where(is_rope(parts), rope, chain * WATER_DENSITY / STEEL_DENSITY)
     return _AnchorLines(
         position=position.reshape(-1, 3),
         is_anchor=np.tile(np.arange(each) == each - 1, count),
         bars=bars,
-        is_rope=np.tile(is_rope(cage.anchor_lines), count),
+        mass=np.tile(mass, count),
+        displaced=np.tile(displaced, count),
     )
 
 
@@ -212,54 +220,33 @@ def _frame(cage: Cage, shape: LineShape, bridles: Float[np.ndarray, "corner 3"])
 def _lump(
     cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines
 ) -> tuple[Float[np.ndarray, " n"], Float[np.ndarray, " n"], Float[np.ndarray, " n"]]:
-    """Weight [N], mass with added mass, and the water's share of it [kg], of all nodes.
-
-    A rope weighs nothing in water: with what it holds between its strands, it is as heavy.
-    """
-    parts, more = cage.anchor_lines, np.zeros(len(lines.position))
-    weight = np.append(base.weight, np.tile(-node_weight(parts)[1:], lines.is_anchor.sum()))
+    """Weight [N], mass with added mass, and the water's share of it [kg], of all nodes."""
+    more, hung = np.zeros(len(lines.position)), node_weight(cage.anchor_lines)[1:]
+    weight = np.append(base.weight, np.tile(-hung, lines.is_anchor.sum()))
     mass, water = np.append(base.mass, more), np.append(base.water_mass, more)
-
-    def put(ends: np.ndarray, length: np.ndarray, own: float, displaced: float, added: float):
-        half = np.repeat(length / 2.0, 2)
-        np.add.at(mass, ends.ravel(), (own + added) * half)
-        np.add.at(water, ends.ravel(), (displaced + added) * half)
-
-    side = WATER_DENSITY * np.pi / 4.0 * cage.frame.rope_diameter**2
-    put(frame.ends, frame.length, side, side, side)
-    bars, rope = lines.bars, lines.is_rope
-    own = WATER_DENSITY * np.pi / 4.0 * parts.rope_diameter**2
-    put(bars.ends[rope], bars.length[rope], own, own, own)
-    displaced = parts.chain_mass * WATER_DENSITY / STEEL_DENSITY
-    put(bars.ends[~rope], bars.length[~rope], parts.chain_mass, displaced, displaced)
+    side = np.full(len(frame.length), WATER_DENSITY * np.pi / 4.0 * cage.frame.rope_diameter**2)
+    for bars, own, displaced in ((frame, side, side), (lines.bars, lines.mass, lines.displaced)):
+        half = bars.length / 2.0  # at either end; as much water is added as displaced
+        np.add.at(mass, bars.ends, ((own + displaced) * half)[:, None])
+        np.add.at(water, bars.ends, ((displaced + displaced) * half)[:, None])
     return weight, mass, water
 
 
-def _slender(cage: Cage, base: Assembly, lines: _AnchorLines) -> Slender:
+def _slender(base: Assembly, lines: _AnchorLines) -> Slender:
     """Nodes along the anchor lines, which take no water with them along themselves.
 
     Corners have added mass in all directions: they are plates, chains and buoys.
     """
-    first, count = len(base.position), len(lines.position)
-    parts, bars = cage.anchor_lines, lines.bars
-    per_length = np.where(
-        lines.is_rope,
-        WATER_DENSITY * np.pi / 4.0 * parts.rope_diameter**2,
-        parts.chain_mass * WATER_DENSITY / STEEL_DENSITY,
-    )
+    first, count, bars = len(base.position), len(lines.position), lines.bars
     added = np.zeros(first + count)
-    np.add.at(added, bars.ends, (per_length * bars.length / 2.0)[:, None])
+    np.add.at(added, bars.ends, (lines.displaced * bars.length / 2.0)[:, None])
     # the node before each along its line and the one after
     before, after = np.zeros((2, first + count), dtype=np.int64)
     before[bars.ends[:, 1]], after[bars.ends[:, 0]] = bars.ends[:, 0], bars.ends[:, 1]
     nodes = first + np.flatnonzero(~lines.is_anchor)
     position = np.vstack([base.position, lines.position])
-    along = position[after[nodes]] - position[before[nodes]]
-    return Slender(
-        nodes=nodes,
-        tangent=along / np.linalg.norm(along, axis=1, keepdims=True),
-        added_mass=added[nodes],
-    )
+    tangent, _ = direction(position, np.column_stack([before[nodes], after[nodes]]))
+    return Slender(nodes=nodes, tangent=tangent, added_mass=added[nodes])
 
 
 def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines) -> Cylinders:
@@ -293,6 +280,4 @@ def _ground(
 ) -> Ground:
     """The sea bed under the lines' nodes."""
     nodes = len(base.position) + np.flatnonzero(~lines.is_anchor)
-    return Ground(
-        nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-cage.site.water_depth
-    )
+    return Ground.under(nodes, mass, cage.site.water_depth)

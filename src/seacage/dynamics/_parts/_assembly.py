@@ -11,6 +11,8 @@ from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import GRAVITY, WATER_DENSITY, InputError, Rows, compass
 from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
 
+SINKING = 0.01  # depth to which a line's node sinks into the sea bed under its own weight [m]
+
 IntPerBridle = Int[np.ndarray, " bridle"]
 IntPerSpoke = Int[np.ndarray, " spoke"]
 Node3 = Float[np.ndarray, "node 3"]
@@ -28,6 +30,11 @@ class Bars(Rows):
     stiffness: PerBar  # EA [N]
     pushed: Bool[np.ndarray, " bar"]  # carries compression too
     damping_ratio: PerBar  # over pair-critical [-]
+
+    @property
+    def rate(self) -> PerBar:
+        """Spring rate of each, taut or pushed [N/m]."""
+        return self.stiffness / self.length
 
     @classmethod
     def alike(
@@ -178,6 +185,11 @@ class Ground:
     stiffness: Float[np.ndarray, " ground"]  # against sinking in [N/m]
     level: float  # of the sea bed, z [m]
 
+    @classmethod
+    def under(cls, nodes: Int[np.ndarray, " ground"], mass: PerNode, depth: float) -> "Ground":
+        """A sea bed at a depth [m] that yields by ``SINKING`` to the weight of some nodes' mass."""
+        return cls(nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-depth)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scales:
@@ -250,11 +262,7 @@ class Assembly:
             cylinders=_cylinders(cage),
             floats=_floats(cage, carried),
             springs=springs,
-            ground=Ground(
-                nodes=np.zeros(0, dtype=np.int64),
-                stiffness=np.zeros(0),
-                level=-cage.site.water_depth,
-            ),
+            ground=Ground.under(np.zeros(0, dtype=np.int64), mass, cage.site.water_depth),
         )
 
     def held(self) -> "Assembly":
@@ -275,11 +283,10 @@ class Assembly:
 
         Their stiffness is divided by ``softness``; ``offset`` then lengthens each [m].
         """
-        bars, ends = self.bars, self.bars.ends[self.bridles]
-        span = np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
+        bars, taut = self.bars, span(position, self.bars.ends[self.bridles])
         stiffness, length = bars.stiffness.copy(), bars.length.copy()
         stiffness[self.bridles] /= softness
-        length[self.bridles] = span / (1.0 + tension / stiffness[self.bridles]) + np.array(offset)
+        length[self.bridles] = taut / (1.0 + tension / stiffness[self.bridles]) + np.array(offset)
         return replace(self, bars=replace(bars, stiffness=stiffness, length=length))
 
 
@@ -305,8 +312,7 @@ def _bars(cage: Cage, position: Node3) -> tuple[Bars, IntPerBridle]:
 
 def _net_bars(cage: Cage) -> Bars:
     """Netting lumped into its edges: each stands for the width of net beside it."""
-    p, spokes = cage.design_position, cage.spokes
-    length = np.linalg.norm(p[cage.edges[:, 1]] - p[cage.edges[:, 0]], axis=1)
+    length, spokes = span(cage.design_position, cage.edges), cage.spokes
     around = length[: cage.rings * spokes].reshape(cage.rings, spokes)
     down = length[cage.rings * spokes :].reshape(cage.rings, spokes)  # the apex edges last
     above = np.vstack([np.zeros((1, spokes)), down[:-1]])
@@ -319,9 +325,8 @@ def _net_bars(cage: Cage) -> Bars:
 
 
 def _hoop(cage: Cage, ring: int, stiffness: float) -> Bars:
-    ends = _around(cage, ring)
-    length = np.linalg.norm(np.diff(cage.design_position[ends], axis=1)[:, 0], axis=1)
-    damping_ratio = cage.netting.damping_ratio
+    ends, damping_ratio = _around(cage, ring), cage.netting.damping_ratio
+    length = span(cage.design_position, ends)
     return Bars.alike(ends, length, stiffness, damping_ratio=damping_ratio, pushed=True)
 
 
@@ -329,15 +334,15 @@ def _bridle_bars(cage: Cage, position: Node3) -> Bars:
     """Rope and chain as one spring in series, with the pretension in the design shape."""
     line = cage.bridles
     ends = np.column_stack([cage.node_count + cage.bridle_corner, cage.bridle_nodes])
-    span = np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
-    if np.any(span <= line.chain_length):
+    whole = span(position, ends)
+    if np.any(whole <= line.chain_length):
         raise InputError(
             f"Cage {cage.name}: chain_length_m = {line.chain_length:g} is longer than the "
-            f"shortest bridle ({span.min():.3g} m)."
+            f"shortest bridle ({whole.min():.3g} m)."
         )
-    give = (span - line.chain_length) / line.rope_axial_stiffness
-    stiffness = span / (give + line.chain_length / line.chain_axial_stiffness)
-    length = span / (1.0 + line.pretension / stiffness)
+    give = (whole - line.chain_length) / line.rope_axial_stiffness
+    stiffness = whole / (give + line.chain_length / line.chain_axial_stiffness)
+    length = whole / (1.0 + line.pretension / stiffness)
     return Bars.alike(ends, length, stiffness, damping_ratio=cage.netting.damping_ratio)
 
 
@@ -429,8 +434,8 @@ def _masses(cage: Cage, position: Node3, panels: Panels) -> tuple[PerNode, PerNo
     area = panels.area[:, None] * panels.share
     put(panels.corners, net.mass * area, net.displaced * area, net.added_mass_coefficient)
     meridians = cage.edges[cage.rings * cage.spokes :]
-    span = np.linalg.norm(position[meridians[:, 1]] - position[meridians[:, 0]], axis=1)
-    rope = WATER_DENSITY * np.pi / 4.0 * cage.ropes.diameter**2 * span[:, None] / 2.0
+    length = span(position, meridians)[:, None]
+    rope = WATER_DENSITY * np.pi / 4.0 * cage.ropes.diameter**2 * length / 2.0
     put(meridians, rope, rope, 1.0)
     arc, low_arc = _arc(cage, 0), _arc(cage, cage.tube_ring)
     wet, low = _pipe_water(cage)
@@ -463,16 +468,29 @@ def _pipe_water(cage: Cage) -> tuple[PerSpoke, PerSpoke]:
 
 def _slender(cage: Cage) -> Slender:
     wet, low = _pipe_water(cage)
-    added = (
-        cage.collar.added_mass_coefficient * wet,
-        cage.sinker_tube.added_mass_coefficient * low,
+    pipes = (
+        (cage.ring_nodes(0), cage.collar.added_mass_coefficient * wet),
+        (cage.ring_nodes(cage.tube_ring), cage.sinker_tube.added_mass_coefficient * low),
     )
     return Slender.joined(
-        *(
-            Slender.ring(cage.ring_nodes(ring), cage.design_position, one)
-            for ring, one in zip((0, cage.tube_ring), added, strict=True)
-        )
+        *(Slender.ring(nodes, cage.design_position, added) for nodes, added in pipes)
     )
+
+
+def span(
+    position: Float[np.ndarray, "*case node 3"], ends: Int[np.ndarray, "part 2"]
+) -> Float[np.ndarray, "*case part"]:
+    """Distance between the ends of each part [m]."""
+    return np.linalg.norm(position[..., ends[:, 1], :] - position[..., ends[:, 0], :], axis=-1)
+
+
+def direction(
+    position: Float[np.ndarray, "*case node 3"], ends: Int[np.ndarray, "part 2"]
+) -> tuple[Float[np.ndarray, "*case part 3"], Float[np.ndarray, "*case part"]]:
+    """Unit vector from each part's first end to its second [-], and their distance [m]."""
+    along = position[..., ends[:, 1], :] - position[..., ends[:, 0], :]
+    length = np.linalg.norm(along, axis=-1)
+    return along / length[..., None], length
 
 
 def corner_shares(corners: Int[np.ndarray, "panel 4"]) -> Float[np.ndarray, "panel 4"]:
@@ -511,9 +529,7 @@ def _floats(cage: Cage, carried: float) -> Floats:
 
 def _springs(cage: Cage, position: Node3, bars: Bars, bridles: IntPerBridle) -> Springs:
     """The corners' springs, loaded so that the pretensioned bridles keep them in place."""
-    ends = bars.ends[bridles]
-    along = position[ends[:, 1]] - position[ends[:, 0]]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    along, _ = direction(position, bars.ends[bridles])
     preload = np.zeros((len(cage.corner_position), 3))
     np.add.at(preload, cage.bridle_corner, -cage.bridles.pretension * along)
     frame = cage.frame

@@ -24,9 +24,9 @@ from seacage.dynamics._parts._assembly import (
     corner_shares,
     panel_area,
     ring_chords,
+    span,
 )
 
-SINKING = 0.01  # depth to which a line's node sinks into the sea bed under its own weight [m]
 MOST_STRAIN = 0.1  # of a tie or a line as built: beyond, the start would be an explosion [-]
 MOST_SOLIDITY = 0.9  # beyond it a net is a wall, and no screen law is right [-]
 
@@ -147,7 +147,7 @@ def _member(
 ) -> _Member:
     """Bars of a part's section, as long as given [m] or, at 0, as built."""
     section = structure.section_of(part)
-    length = np.full(len(ends), given) if given else _span(structure, ends)
+    length = np.full(len(ends), given) if given else span(structure.design_position, ends)
     bears = pushed or section.is_pipe
     return _Member(section=section, ends=ends, length=length, pushed=bears, **kind)
 
@@ -161,11 +161,6 @@ def _first_bars(members: list[_Member], first: int, *, is_line: bool) -> Int[np.
             bars += range(first, first + len(member.ends), each)
         first += len(member.ends)
     return np.array(bars, dtype=np.int64)
-
-
-def _span(structure: Structure, ends: Int[np.ndarray, "bar 2"]) -> Float[np.ndarray, " bar"]:
-    position = structure.design_position
-    return np.linalg.norm(position[ends[:, 1]] - position[ends[:, 0]], axis=1)
 
 
 def _bars(member: _Member) -> Bars:
@@ -374,9 +369,7 @@ def _ground(structure: Structure, mass: Float[np.ndarray, " node"]) -> Ground:
     """The sea bed under the points and the lines."""
     inner = [structure.line_nodes(index)[1:-1] for index in range(len(structure.line))]
     nodes = np.concatenate([structure.point_nodes, *inner])
-    return Ground(
-        nodes=nodes, stiffness=mass[nodes] * GRAVITY / SINKING, level=-structure.site.water_depth
-    )
+    return Ground.under(nodes, mass, structure.site.water_depth)
 
 
 def _check_lengths(structure: Structure) -> None:
@@ -384,10 +377,10 @@ def _check_lengths(structure: Structure) -> None:
     ties = [(tie, structure.tie_nodes(i)) for i, tie in enumerate(structure.tie)]
     lines = [(line, structure.line_nodes(i)[None]) for i, line in enumerate(structure.line)]
     for part, nodes in (*ties, *lines):
-        span = float(_span(structure, nodes[:, [0, -1]]).max())
-        if part.length > 0.0 and span > (1.0 + MOST_STRAIN) * part.length:
+        apart = float(span(structure.design_position, nodes[:, [0, -1]]).max())
+        if part.length > 0.0 and apart > (1.0 + MOST_STRAIN) * part.length:
             raise InputError(
-                f"Structure {structure.name}: {part.name!r} spans {span:.3g} m as built, but its "
+                f"Structure {structure.name}: {part.name!r} spans {apart:.3g} m as built, but its "
                 f"length_m = {part.length:g}. Move its ends together, or lengthen it."
             )
 

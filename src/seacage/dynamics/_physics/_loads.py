@@ -60,17 +60,22 @@ def nodal_force(assembly: assemblies.Assembly, flow: SteadyFlow, position: Nodal
 
 def bar_tension(bars: assemblies.Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
     """Tension of linear elastic bars; ropes and twines go slack [N]."""
-    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
-    strain = np.linalg.norm(along, axis=-1) / bars.length - 1.0
+    strain = assemblies.span(position, bars.ends) / bars.length - 1.0
     tension = bars.stiffness * strain
     return np.where(bars.pushed, tension, np.maximum(tension, 0.0))
 
 
 def bar_force(bars: assemblies.Bars, position: Nodal) -> Nodal:
     """Pull of the bars on their ends [N]."""
-    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
-    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
-    pull = bar_tension(bars, position)[..., None] * unit
+    return bar_pull(bars, position, bar_tension(bars, position))
+
+
+def bar_pull(
+    bars: assemblies.Bars, position: Nodal, tension: Float[np.ndarray, "case bar"]
+) -> Nodal:
+    """Pull of bars under given tensions on their ends [N]."""
+    unit, _ = assemblies.direction(position, bars.ends)
+    pull = tension[..., None] * unit
     return _gather(position, bars.ends, np.stack([pull, -pull], axis=2))
 
 
@@ -190,14 +195,12 @@ def screen_load(
 
 def cylinder_force(cylinders: assemblies.Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:
     """Cross-flow drag on the pipes [N]; the cross-flow principle, Hoerner (1965)."""
-    along = position[:, cylinders.ends[:, 1]] - position[:, cylinders.ends[:, 0]]
-    length = np.linalg.norm(along, axis=-1, keepdims=True)
-    tangent = along / length
+    tangent, length = assemblies.direction(position, cylinders.ends)
     u = flow.direction[:, None]
     across = u - np.sum(u * tangent, axis=-1, keepdims=True) * tangent
     speed = np.linalg.norm(across, axis=-1, keepdims=True)
     pressure = flow.pipe_pressure[:, None, None]
-    load = pressure * cylinders.drag_width[:, None] * length * speed * across
+    load = pressure * cylinders.drag_width[:, None] * length[..., None] * speed * across
     return _gather(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
 
 

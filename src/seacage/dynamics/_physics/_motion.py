@@ -19,12 +19,14 @@ from seacage.dynamics._parts._assembly import (
     Panels,
     Slender,
     Springs,
+    direction,
 )
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
     SteadyFlow,
     _gather,
+    bar_pull,
     bar_tension,
     bend_force,
     float_force,
@@ -210,10 +212,10 @@ def twine_load(panels: Panels, law: NetLaw, position: Nodal, past: CasePanel3) -
     _, diameter = law.netting(panels)
     weight = law.factor * DYNAMIC * diameter * length
     load = np.zeros_like(past)
-    for direction in families:
-        square = np.sum(direction**2, axis=-1, keepdims=True)
-        share = np.sum(past * direction, axis=-1, keepdims=True) / np.maximum(square, 1e-12)
-        across = past - share * direction
+    for along in families:
+        square = np.sum(along**2, axis=-1, keepdims=True)
+        share = np.sum(past * along, axis=-1, keepdims=True) / np.maximum(square, 1e-12)
+        across = past - share * along
         speed = np.linalg.norm(across, axis=-1, keepdims=True)
         if law.twine_drag is None:
             reynolds = diameter[..., None] * speed / WATER_VISCOSITY
@@ -221,7 +223,7 @@ def twine_load(panels: Panels, law: NetLaw, position: Nodal, past: CasePanel3) -
         else:
             normal = np.full_like(speed, law.twine_drag[0])
         rough = 0.0 if law.twine_drag is None else law.twine_drag[1]
-        skin = rough * np.abs(share) * share * np.sqrt(square) * direction
+        skin = rough * np.abs(share) * share * np.sqrt(square) * along
         load += weight[..., None] * (normal * speed * across + skin)
     return load
 
@@ -230,7 +232,7 @@ def bar_damping(bars: Bars, mass: PerNode) -> Float[np.ndarray, " bar"]:
     """Damping coefficient of each bar: a share of the critical one of its two ends [N s/m]."""
     i, j = bars.ends.T
     pair = mass[i] * mass[j] / (mass[i] + mass[j])
-    return 2.0 * bars.damping_ratio * np.sqrt(bars.stiffness / bars.length * pair)
+    return 2.0 * bars.damping_ratio * np.sqrt(bars.rate * pair)
 
 
 def damped_tension(
@@ -238,8 +240,7 @@ def damped_tension(
 ) -> Float[np.ndarray, "case bar"]:
     """Tension with structural damping; a slack bar has none [N]."""
     i, j = bars.ends.T
-    along = position[:, j] - position[:, i]
-    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    unit, _ = direction(position, bars.ends)
     apart = np.sum((velocity[:, j] - velocity[:, i]) * unit, axis=-1)
     elastic = bar_tension(bars, position)
     bears = elastic + bar_damping(bars, mass) * apart
@@ -248,10 +249,7 @@ def damped_tension(
 
 def damped_bar_force(bars: Bars, mass: PerNode, position: Nodal, velocity: Nodal) -> Nodal:
     """Pull of the bars on their ends [N]."""
-    along = position[:, bars.ends[:, 1]] - position[:, bars.ends[:, 0]]
-    unit = along / np.linalg.norm(along, axis=-1, keepdims=True)
-    pull = damped_tension(bars, mass, position, velocity)[..., None] * unit
-    return _gather(position, bars.ends, np.stack([pull, -pull], axis=2))
+    return bar_pull(bars, position, damped_tension(bars, mass, position, velocity))
 
 
 def moving_cylinder_force(
@@ -259,16 +257,14 @@ def moving_cylinder_force(
 ) -> Nodal:
     """Cross-flow drag and skin friction of pipes and lines in relative flow [N]."""
     ends = cylinders.ends
-    along = position[:, ends[:, 1]] - position[:, ends[:, 0]]
-    length = np.linalg.norm(along, axis=-1, keepdims=True)
-    tangent = along / length
+    tangent, length = direction(position, ends)
     past = (water.velocity + water.current - velocity)[:, ends].mean(axis=2)
     slide = np.sum(past * tangent, axis=-1, keepdims=True)
     across = past - slide * tangent
     speed = np.linalg.norm(across, axis=-1, keepdims=True)
     load = cylinders.drag_width[:, None] * speed * across
     load += cylinders.skin_width[:, None] * np.abs(slide) * slide * tangent
-    load *= DYNAMIC * length
+    load *= DYNAMIC * length[..., None]
     return _gather(position, ends, np.stack([load, load], axis=2) / 2.0)
 
 
