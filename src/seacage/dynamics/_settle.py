@@ -14,7 +14,7 @@ from seacage.dynamics._moored._choice import Mooring, moor
 from seacage.dynamics._moored._ends import mooring_result
 from seacage.dynamics._moored._parted import part
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._flow import flow_of_laws, steady_flow
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import SteadyFlow, line_tension, nodal_force, total_net_force
 from seacage.dynamics._physics._screens import Law, Tuning, beyond_law, law_of_each, law_warnings
 from seacage.ocean import SeaState, wave_velocity_variance
@@ -137,10 +137,10 @@ def settle(
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     laws: tuple[Law, ...] = law_of_each(law, len(seas))
-    flow = flow_of_laws(
+    flow = steady_flow(
         assembly,
         velocity,
-        laws=laws,
+        law=laws,
         wake=wake,
         pipe_drag=collar_drag,
         wave_variance=variance,

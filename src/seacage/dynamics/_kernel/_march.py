@@ -122,12 +122,8 @@ class March:
             steps=steps.each,
             hold=steps.hold,
         )
-        kernel().library.seacage_march(
-            *map(
-                ctypes.byref,
-                (self._body, self._net, self._sea, schedule, self._motion, self._record),
-            )
-        )
+        structs = (self._body, self._net, self._sea, schedule, self._motion, self._record)
+        kernel().library.seacage_march(*map(ctypes.byref, structs))
         self.refreshed += refreshes
 
     @property
@@ -166,12 +162,12 @@ class March:
     @property
     def position(self) -> Float[np.ndarray, "case node 3"]:
         """Present positions of the nodes [m]."""
-        return from_lanes(self._motion.arrays["position"])[: self.cases].astype(np.float64)
+        return self._of("position")
 
     @property
     def velocity(self) -> Float[np.ndarray, "case node 3"]:
         """Present velocities of the nodes [m/s]."""
-        return from_lanes(self._motion.arrays["velocity"])[: self.cases].astype(np.float64)
+        return self._of("velocity")
 
     def position_of(self, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
         """Present positions of some nodes [m]."""
@@ -192,7 +188,9 @@ class March:
         at, moving = self._of("position", nodes), self._of("velocity", nodes)
         return damped_tension(bridles, assembly.mass[nodes], at, moving)
 
-    def _of(self, name: str, nodes: Int[np.ndarray, " kept"]) -> Float[np.ndarray, "case kept 3"]:
+    def _of(
+        self, name: str, nodes: Int[np.ndarray, " kept"] | slice = slice(None)
+    ) -> Float[np.ndarray, "case kept 3"]:
         return from_lanes(self._motion.arrays[name][nodes])[: self.cases].astype(np.float64)
 
     @property

@@ -15,7 +15,7 @@ from seacage.dynamics._moored._choice import Mooring, moor
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._moored._parted import part
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._flow import flow_of_laws
+from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._settle import rest_shape
@@ -80,10 +80,10 @@ class Simulation:
 
         A structure starts from its design rather than from a shape that is no equilibrium.
         """
-        flow = flow_of_laws(
+        flow = steady_flow(
             assembly,
             np.array([sea.current_velocity for sea in seas]),
-            laws=["loland" if law == "morison" else law for law in laws],
+            law=["loland" if law == "morison" else law for law in laws],
             wake=self.wake,
             tuning=self.tuning,
         )
