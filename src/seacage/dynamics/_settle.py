@@ -132,8 +132,7 @@ def settle(
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
     _check(seas, mean_waves=mean_waves, starts=starts)
-    whole = moor(cage, mooring)
-    assembly = part(whole.held() if hold_collar else whole, parted)
+    assembly = part(moor(cage, mooring, hold_collar=hold_collar), parted)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
     laws: tuple[Law, ...] = law_of_each(law, len(seas))
@@ -184,8 +183,7 @@ def rest_shape(
     """
     if isinstance(cage, Structure):
         return cage.design_position
-    whole = moor(cage, mooring)
-    assembly = whole.held() if hold_collar else whole
+    assembly = moor(cage, mooring, hold_collar=hold_collar)
     found = equilibria(assembly, steady_flow(assembly, np.zeros((1, 2)), law="loland"))
     if found.result[0] != Result.CONVERGED:
         raise InputError(

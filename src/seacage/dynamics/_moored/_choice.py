@@ -18,10 +18,10 @@ SPRINGS = (
 """Warning of results on springs."""
 
 
-def moor(cage: Cage | Structure, mooring: Mooring) -> Assembly:
+def moor(cage: Cage | Structure, mooring: Mooring, *, hold_collar: bool = False) -> Assembly:
     """The cage on frame ropes, buoys and anchor lines ("catenary"), or on corner "springs".
 
-    A structure has lines and anchors of its own.
+    A structure has lines and anchors of its own. The collar may be held in its place.
 
     Raises InputError: another mooring, and what the mooring asks of the cage that its file has not.
     """
@@ -33,5 +33,7 @@ def moor(cage: Cage | Structure, mooring: Mooring) -> Assembly:
                 f"mooring = {mooring!r}, but structure {cage.name} has lines and anchors of its "
                 "own. Leave it out."
             )
-        return assemble_structure(cage)
-    return anchor_assembly(cage) if mooring == "catenary" else assemble(cage)
+        assembly = assemble_structure(cage)
+    else:
+        assembly = anchor_assembly(cage) if mooring == "catenary" else assemble(cage)
+    return assembly.held() if hold_collar else assembly

@@ -46,9 +46,7 @@ class Simulation:
 
     def assembly(self) -> Assembly:
         """The cage on its mooring, with masses that the time step can follow."""
-        assembly = moor(self.cage, self.mooring)
-        if self.hold_collar:
-            assembly = assembly.held()
+        assembly = moor(self.cage, self.mooring, hold_collar=self.hold_collar)
         if not self.collar_drag:
             nothing = np.zeros_like(assembly.cylinders.drag_width)
             pipes = replace(assembly.cylinders, drag_width=nothing)
