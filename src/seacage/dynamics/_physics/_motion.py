@@ -34,7 +34,7 @@ from seacage.dynamics._physics._loads import (
     spring_force,
     wet_share,
 )
-from seacage.dynamics._physics._screens import AS_PUBLISHED, MOVING_LAWS, MovingLaw, Screen, Tuning
+from seacage.dynamics._physics._screens import AS_PUBLISHED, MovingLaw, Screen, Tuning, check_laws
 
 CasePanel = Float[np.ndarray, "*case panel"]
 CasePanel3 = Float[np.ndarray, "case panel 3"]
@@ -69,19 +69,12 @@ class NetLaw:
     tuning: Tuning = AS_PUBLISHED  # what is changed of a screen law
 
     def __post_init__(self) -> None:
-        if self.name not in MOVING_LAWS:
-            known = ", ".join(MOVING_LAWS)
-            raise InputError(f"simulate: no law {self.name!r}; there are: {known}.")
+        check_laws([self.name], self.tuning)
         drag = np.array(self.twine_drag or (0.0, 0.0))
         if not (np.isfinite(drag).all() and np.all(drag >= 0.0)):
             raise InputError(
                 f"simulate: twine_drag = {self.twine_drag} must be two finite numbers of at least "
                 "0, across and along the twine. Pass None for those of a smooth cylinder."
-            )
-        if self.name == "morison" and self.tuning != AS_PUBLISHED:
-            raise InputError(
-                "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
-                "none. Give twine_drag, whose second number is the skin friction along a twine."
             )
         _check_range("solidity", self.solidity, 1.0)
         _check_range("drag_factor", self.drag_factor, np.inf)

@@ -157,6 +157,18 @@ def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, 
     return tuple(law)
 
 
+def check_laws(laws: Sequence[MovingLaw], tuning: Tuning) -> None:
+    """Refuse laws of a moving net that are none, and changes where there is no screen law."""
+    for law in laws:
+        if law not in MOVING_LAWS:
+            raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+    if tuning != AS_PUBLISHED and set(laws) == {"morison"}:
+        raise InputError(
+            "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
+            "none. Give twine_drag, whose second number is the skin friction along a twine."
+        )
+
+
 def beyond_law(laws: Sequence[MovingLaw], current_speed: PerCase) -> Bool[np.ndarray, " case"]:
     """Which cases meet a current [m/s] that their law is not known for."""
     return (np.array(laws) == "kristiansen-faltinsen") & (current_speed > FASTEST)

@@ -16,11 +16,10 @@ from seacage.dynamics._kernel._march_inputs import Ocean, has_long_crests, simul
 from seacage.dynamics._moored._choice import Mooring
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._screens import (
-    AS_PUBLISHED,
-    MOVING_LAWS,
     MovingLaw,
     Tuning,
     beyond_law,
+    check_laws,
     law_of_each,
     law_warnings,
 )
@@ -244,18 +243,11 @@ def _check(
         raise InputError("simulate: no sea state given. Pass one or more.")
     if workers < 1:
         raise InputError(f"simulate: workers = {workers} threads do no work. Give 1 or more.")
-    for law in laws:
-        if law not in MOVING_LAWS:
-            raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+    check_laws(laws, tuning)
     if twine_drag is not None and "morison" not in laws:
         raise InputError(
             f"simulate: twine_drag = {twine_drag}, but law {laws[0]!r} knows no twines. "
             "Leave it out, or pass law='morison'."
-        )
-    if tuning != AS_PUBLISHED and set(laws) == {"morison"}:
-        raise InputError(
-            "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
-            "none. Give twine_drag, whose second number is the skin friction along a twine."
         )
 
 
