@@ -207,14 +207,9 @@ def _wave_tables(waves: Sequence[Waves]) -> dict[str, np.ndarray]:
     }
 
 
-WAVE_KINDS: dict[str, Any] = {
-    "turns": np.float64,
-    "turns_per_second": np.float64,
-    **dict.fromkeys(
-        ("number", "toward_x", "toward_y", "amplitude", "speed", "reach", "floor", "bounce"),
-        np.float32,
-    ),
-}
+_SINGLE = ("number", "toward_x", "toward_y", "amplitude", "speed", "reach", "floor", "bounce")
+WAVE_KINDS: dict[str, Any] = dict.fromkeys(_SINGLE, np.float32)
+WAVE_KINDS |= dict.fromkeys(("turns", "turns_per_second"), np.float64)
 
 
 def _wave_table(waves: Waves, count: int) -> dict[str, np.ndarray]:

@@ -114,14 +114,9 @@ def ocean_of(
     seas: list[SeaState], waves: list[Waves], profile: CurrentProfile | None, depth: float
 ) -> Ocean:
     surface = np.array([sea.current_velocity for sea in seas])
-    if profile is None:
-        return Ocean(waves=waves, current=surface[:, None], level_z=np.zeros(1), depth=depth)
-    return Ocean(
-        waves=waves,
-        current=profile.velocity(surface),
-        level_z=-np.array(profile.depth),
-        depth=depth,
-    )
+    current = surface[:, None] if profile is None else profile.velocity(surface)
+    level_z = np.zeros(1) if profile is None else -np.array(profile.depth)
+    return Ocean(waves=waves, current=current, level_z=level_z, depth=depth)
 
 
 def wakes(

@@ -178,20 +178,18 @@ def _mask_lost(history: History, march: March) -> History:
     def after(series: np.ndarray) -> np.ndarray:
         return np.where(gone.reshape(-1, *(1,) * (series.ndim - 1)), np.nan, series)
 
+    def nothing(values: list[np.ndarray]) -> np.ndarray:
+        return np.full_like(values[0], np.nan)
+
+    series = ("node_position", "bridle_tension", "line_tension")
     lost = ("node", "bridle", "net_force", "volume", "lines", "water_load", "twines")
     lost += ("node_displacement", "volume_fraction", "second_moment")
     return replace(
         history,
-        node_position=after(history.node_position),
-        bridle_tension=after(history.bridle_tension),
-        line_tension=after(history.line_tension),
         result=np.asarray(Result.DIVERGED),
-        **{name: _each([getattr(history, name)], _nothing) for name in lost},
+        **{name: after(getattr(history, name)) for name in series},
+        **{name: _each([getattr(history, name)], nothing) for name in lost},
     )
-
-
-def _nothing(values: list[np.ndarray]) -> np.ndarray:
-    return np.full_like(values[0], np.nan)
 
 
 def _each(several: list[Any], join: Callable[[list[np.ndarray]], np.ndarray]) -> Any:
