@@ -19,7 +19,6 @@ from seacage.studies._fidelity._report import page_values
 from seacage.studies._fidelity._rescaling import Rescaling, rescalings
 from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows, choose_windows
 from seacage.studies._page import write_report
-from seacage.studies._stages import Stages
 
 _DAYS = 48.0  # of the field that is made where none is given
 _POINTS = 300  # readings that each sensor teaches with at most, as a twin's do
@@ -77,12 +76,21 @@ def fidelity_study(
         Of the choice of windows, the low fidelity's waves, the searches and the draws.
     """
     out, report = Path(out), progress or no_progress
-    stages = Stages(folder=out / "stages")
     hidden = TruthParameters.read() if hidden is None else hidden
-    record, truth, cage = _field(out, field, cage, hidden, seed, workers, report)
+    if cage is None:
+        cage = Cage.named("ace" if field is None else FieldRecord.read(field).cage)
+    chain = Chain(
+        folder=out / "stages",
+        cage=cage,
+        recipe=Recipe(seed=seed, days=_DAYS),
+        given_field=None if field is None else Path(field),
+        hidden=hidden,
+        workers=workers,
+        progress=report,
+    )
+    record, stages = chain.field, chain.stages
     _check(record, hidden, windows)
-    sensors = Sensors.of(cage)
-    chosen = choose_windows(sensors, record, truth, count=windows, seed=seed)
+    chosen = choose_windows(Sensors.of(cage), record, chain.truth, count=windows, seed=seed)
     whole = answer_windows(chosen, stages, seed=seed, workers=workers, progress=report)
     survey = whole.rows(whole.surveyed)
     gaps = sensor_gaps(survey, seed=seed)
@@ -112,31 +120,6 @@ def fidelity_study(
         null=null,
         fouling=fouling,
     )
-
-
-def _field(
-    out: Path,
-    field: str | Path | None,
-    cage: Cage | None,
-    hidden: TruthParameters,
-    seed: int,
-    workers: int | None,
-    progress: Progress,
-) -> tuple[FieldRecord, FieldRecord, Cage]:
-    """The record, its truth, and the cage as drawn; made where none is given."""
-    if field is not None:
-        record = FieldRecord.read(field)
-        truth = FieldRecord.read(Path(field) / "truth")
-        return record, truth, Cage.named(record.cage) if cage is None else cage
-    chain = Chain(
-        folder=out / "stages",
-        cage=Cage.named("ace") if cage is None else cage,
-        recipe=Recipe(seed=seed, days=_DAYS),
-        hidden=hidden,
-        workers=workers,
-        progress=progress,
-    )
-    return chain.field, chain.truth, chain.cage
 
 
 def _check(record: FieldRecord, hidden: TruthParameters, windows: int) -> None:
