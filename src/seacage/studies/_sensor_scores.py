@@ -47,17 +47,11 @@ class Readings(Rows):
         The standard deviation is averaged too: the error of a held input does not average out.
         """
         second = self.time.astype("datetime64[s]").astype(np.int64)
-        window, (reading, low, multi, multi_std) = block_means(
-            second // int(length), self.reading, self.low, self.multi, self.multi_std
-        )
-        return replace(
-            self,
-            time=(window * int(length)).astype("datetime64[s]"),
-            reading=reading,
-            low=low,
-            multi=multi,
-            multi_std=multi_std,
-        )
+        names = ("reading", "low", "multi", "multi_std")
+        columns = (getattr(self, name) for name in names)
+        window, means = block_means(second // int(length), *columns)
+        time = (window * int(length)).astype("datetime64[s]")
+        return replace(self, time=time, **dict(zip(names, means, strict=True)))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,6 +1,7 @@
 """How far the low fidelity is from the truth: per sensor, direction of the current and growth."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -69,26 +70,17 @@ def _gap(windows: Windows, column: int, sector: Int[np.ndarray, " window"], seed
     return SensorGap(
         sensor=windows.sensors.names[column],
         unit=windows.sensors.units[column],
-        windows=len(windows),
-        truth=float(truth.mean()),
-        low=float(low.mean()),
         bias=by_day(low - truth, windows.day, seed=seed),
-        mae=float(np.abs(low - truth).mean()),
         sectors=tuple(
-            _sector(name, truth[sector == number], low[sector == number])
-            for number, name in enumerate(SECTORS)
-            if np.any(sector == number)
+            SectorGap(sector=name, **_means(truth[here], low[here]))
+            for name, here in ((name, sector == number) for number, name in enumerate(SECTORS))
+            if np.any(here)
         ),
+        **_means(truth, low),
     )
 
 
-def _sector(
-    name: str, truth: Float[np.ndarray, " here"], low: Float[np.ndarray, " here"]
-) -> SectorGap:
-    return SectorGap(
-        sector=name,
-        windows=len(truth),
-        truth=float(truth.mean()),
-        low=float(low.mean()),
-        mae=float(np.abs(low - truth).mean()),
-    )
+def _means(truth: Float[np.ndarray, " some"], low: Float[np.ndarray, " some"]) -> dict[str, Any]:
+    """Numbers of some windows that a sensor and a sector of it both have."""
+    mae = float(np.abs(low - truth).mean())
+    return {"windows": len(low), "truth": float(truth.mean()), "low": float(low.mean()), "mae": mae}

@@ -21,7 +21,7 @@ from seacage.surrogates import OverTime, Prediction, metocean_features
 
 _ROOMS = ("conventions", "surrogates")  # whose code makes a model's answers, its features included
 # Quantiles of the test cases' current speeds that the two nets drawn are taken at
-_HARSH, _MILD = 0.95, 0.2
+_DRAWN = {"Harsh": 0.95, "Mild": 0.2}
 
 _TIMED = 20  # shapes asked for one by one to say what one takes
 
@@ -214,10 +214,7 @@ def _draw_cases(trial: ShapeTrial, answers: Mapping[str, Prediction]) -> tuple[S
     seas, computed = trial.seas, trial.computed
     speed = np.array([sea.current_speed for sea in seas])
     order = np.argsort(speed, kind="stable")
-    rows = {
-        called: int(order[round(share * (len(order) - 1))])
-        for called, share in (("Harsh", _HARSH), ("Mild", _MILD))
-    }
+    rows = {one: int(order[round(share * (len(order) - 1))]) for one, share in _DRAWN.items()}
     return tuple(
         ShapeCase(
             called=called,
