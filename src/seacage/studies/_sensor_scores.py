@@ -127,8 +127,7 @@ def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
     The buoy's last sample holds until the next; where it was unsound or too old there is no
     number, and the reading is not scored. Sensors that the twin does not know are left out.
 
-    ``answer``: of the twin, one row for each row of the field record's buoy. ``field``: sensors and
-    buoy.
+    ``answer``: of the twin, one row for each row of the field record's buoy.
     """
     known = [name for name in answer.sensor_names if name in field.sensors]
     return {name: _compare(answer, field, name) for name in known}

@@ -2,13 +2,13 @@
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
@@ -19,6 +19,8 @@ from seacage.records import CampaignRecord, read_campaign
 MANIFEST = "stage.json"
 # Rooms whose code makes a campaign
 SIMULATION = ("conventions", "ocean", "cage", "dynamics", "campaigns")
+
+Item = TypeVar("Item")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,9 +78,7 @@ class Stages:
     ) -> CampaignRecord:
         """A cage in the seas of a plan, kept on disk case by case.
 
-        ``stage``: its name, which the progress is called with. ``cage``, ``plan``, ``method``,
-        ``law``, ``second_moment``, ``spin_up``, ``workers``, ``progress``: as for
-        ``run_campaign``.
+        ``stage``: its name, which the progress is called with. All others: as for ``run_campaign``.
         """
 
         def make(begun: Path) -> None:
@@ -102,6 +102,14 @@ class Stages:
             "spin_up_s": spin_up,
         }
         return read_campaign(self.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
+
+
+def count(items: Sequence[Item], stage: str, progress: Progress) -> Iterator[Item]:
+    """Items one after another; progress is called before each, and at the end."""
+    for done, item in enumerate(items):
+        progress(stage, done, len(items))
+        yield item
+    progress(stage, len(items), len(items))
 
 
 @cache  # what this process runs is what it has loaded, whatever is edited meanwhile

@@ -139,8 +139,7 @@ def _zero_covered(null: NullCase) -> Claim:
 
 def _shares(interval: Interval) -> str:
     mean, low, high = (
-        percent(end, digits=1).replace("-", "\N{MINUS SIGN}")
-        for end in (interval.mean, interval.low, interval.high)
+        percent(end, digits=1) for end in (interval.mean, interval.low, interval.high)
     )
     return f"{mean} [{low} … {high}]"
 

@@ -12,7 +12,7 @@ from seacage.dynamics import Law
 from seacage.records import CampaignRecord
 from seacage.studies._drift import without_drift
 from seacage.studies._fidelity._windows import Windows
-from seacage.studies._stages import Stages
+from seacage.studies._stages import Stages, count
 
 SPEEDS = (0.3, 0.5, 0.7)  # of the currents that the gap is settled in [m/s]
 GROWTHS = (0.0, 0.25, 0.5, 0.75, 1.0)  # shares of the whole growth [-]
@@ -75,11 +75,10 @@ def fouling_gap(
         )
 
     low = equilibria_of(sensors.cage, "kristiansen-faltinsen")
-    true: list[CampaignRecord] = []
-    for growth in GROWTHS:
-        progress("fouling", len(true), len(GROWTHS))
-        true.append(equilibria_of(hidden.true_cage(sensors.cage, growth), hidden.law))
-    progress("fouling", len(true), len(true))
+    true = [
+        equilibria_of(hidden.true_cage(sensors.cage, growth), hidden.law)
+        for growth in count(GROWTHS, "fouling", progress)
+    ]
     responses, of_low = (
         [sensors.responses_of(one.node_position, one.bridle_tension) for one in records]
         for records in (true, [low])

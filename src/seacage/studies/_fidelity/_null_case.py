@@ -9,6 +9,7 @@ from seacage.conventions import Progress
 from seacage.records import FieldRecord
 from seacage.studies._fidelity._windows import MEAN_S, Windows, window_means
 from seacage.studies._interval import Interval, by_day
+from seacage.studies._stages import count
 from seacage.surrogates import Prediction
 from seacage.twin import Correction, FixedPrediction, Pairs, spread_out
 
@@ -110,11 +111,9 @@ def null_case(
     usable = [trial for trial in trials if trial.enough]
     real: list[ScoredSensor] = []
     null: list[ScoredSensor] = []
-    for done, trial in enumerate(usable):
-        progress("null case", done, len(usable))
+    for trial in count(usable, "null case", progress):
         real.append(_score(trial, trial.reading, windows, points, seed))
         null.append(_score(trial, trial.low + noise(trial), windows, points, seed))
-    progress("null case", len(usable), len(usable))
     return NullCase(
         null=_together(null, windows, seed),
         real=_together(real, windows, seed),

@@ -11,7 +11,7 @@ from seacage.campaigns import Plan
 from seacage.conventions import Progress, Result
 from seacage.studies._fidelity._windows import Sensors, Windows
 from seacage.studies._interval import Interval, by_day
-from seacage.studies._stages import Stages
+from seacage.studies._stages import Stages, count
 from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_features
 
 if TYPE_CHECKING:
@@ -124,11 +124,9 @@ def rescalings(
     first = np.stack([training.answers_at(*change) for change in coarse])
     names = windows.sensors.names
     found: list[Rescaling] = []
-    for column in range(len(names)):
-        progress("rescaling", column, len(names))
+    for column in count(range(len(names)), "rescaling", progress):
         change = coarse[_least(first[..., column], training.windows.truth[:, column])]
         found.append(_score(training, test, column, _refine(training, column, change), seed))
-    progress("rescaling", len(names), len(names))
     return Rescalings(
         sensors=tuple(found), emulation_mae=dict(zip(names, errors.tolist(), strict=True))
     )

@@ -20,6 +20,7 @@ from seacage.studies._paper._shape_models import (
 from seacage.studies._paper._shape_study import ShapeCase, ShapeStudy
 from seacage.studies._paper._trainings import HEARING, ScoredWays, WayScore
 from seacage.studies._paper._wave_loads import BASELINES, METHODS, STATISTICS, WaveLoads
+from seacage.studies._stages import count
 
 _SHOWN_SPEED = 0.6  # of the current that the net is drawn in [m/s]
 _NOMINAL = 0.95  # coverage of the intervals
@@ -33,11 +34,7 @@ def page_values(
 ) -> dict[str, object]:
     """Figures and names of the page besides the scores.
 
-    ``chain``: its cage is drawn in one sea state; its progress is called as ("draw", done, total)
-    in figures of sensors.
-    ``scored``: ways of training and their scores, with the readings of the first.
-    ``shapes``: scores of models of the whole shape on held-out simulations.
-    ``loads``: scores of loads in waves.
+    The chain's progress is called as ("draw", done, total) in figures of sensors.
     """
     sea = SeaState(current_speed=_SHOWN_SPEED, current_to=chain.cage.site.current_to)
     return {
@@ -97,22 +94,18 @@ def _draw_sensors(chain: Chain, scored: ScoredWays) -> list[dict[str, object]]:
     """The paper's two figures of sensors, and those it leaves out."""
     loads = [score for score in scored.sensors if score.unit == "kN"]
     paper = [score for score in loads if score.sensor in _SHOWN_LOADS] or loads
-    groups = {
-        "Mooring loads": paper,
-        "Depths": [score for score in scored.sensors if score.unit == "m"],
-        "The other bridles": [score for score in loads if score not in paper],
-    }
+    groups = (
+        ("Mooring loads", paper),
+        ("Depths", [score for score in scored.sensors if score.unit == "m"]),
+        ("The other bridles", [score for score in loads if score not in paper]),
+    )
     drawn: list[dict[str, object]] = []
-    total = sum(map(bool, groups.values()))
-    for title, scores in groups.items():
-        chain.progress("draw", len(drawn), total)
-        if scores:
-            readings = [scored.readings[score.sensor] for score in scores]
-            figure = drawings.rows_figure(
-                list(map(comparison, scores, readings)), list(map(display_span, readings))
-            )
-            drawn.append({"title": title, "scores": scores, "picture": embed(figure)})
-    chain.progress("draw", total, total)
+    for title, scores in count([one for one in groups if one[1]], "draw", chain.progress):
+        readings = [scored.readings[score.sensor] for score in scores]
+        figure = drawings.rows_figure(
+            list(map(comparison, scores, readings)), list(map(display_span, readings))
+        )
+        drawn.append({"title": title, "scores": scores, "picture": embed(figure)})
     return drawn
 
 
