@@ -8,10 +8,9 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium import _relax
-from seacage.dynamics._equilibrium._newton import hooke
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
-from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow
 
 CaseNode3 = Float[np.ndarray, "case node 3"]
@@ -175,9 +174,8 @@ def _relax_the_rest(
 def _near(assembly: Assembly, position: CaseNode3, balance: Balance) -> Balancing:
     """Cases begun close to an equilibrium, with the tensions of their shapes."""
     bars = assembly.bars
-    tension = [hooke(bars, shape)[1] for shape in position]
-    slack = np.zeros((0, len(bars.length))) if len(position) == 0 else np.array(tension)
-    borne = np.where(bars.pushed, slack, np.maximum(slack, 1.0))
+    tension = bars.rate * (span(position, bars.ends) - bars.length)
+    borne = np.where(bars.pushed, tension, np.maximum(tension, 1.0))
     return Balancing.begun(position.copy(), borne, barrier=1.0, shift=balance.least_shift)
 
 
