@@ -3,8 +3,8 @@
 import numpy as np
 
 from seacage.dynamics import Extremes, LineLoads, Statistics
+from seacage.dynamics._time._statistics import BODIES, WaterLoad
 from seacage.dynamics._time._twines import PanelTwines
-from seacage.dynamics._time._water_load import BODIES, WaterLoad
 
 
 def bare_line_loads(tension: Statistics) -> LineLoads:

@@ -22,9 +22,8 @@ from seacage.dynamics._time._follow import Followed, follow
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._line_loads import LineLoads
 from seacage.dynamics._time._simulate import simulate
-from seacage.dynamics._time._statistics import Statistics
+from seacage.dynamics._time._statistics import BODIES, Statistics, WaterLoad
 from seacage.dynamics._time._twines import PanelTwines
-from seacage.dynamics._time._water_load import BODIES, WaterLoad
 from seacage.dynamics._time._weather import AbstractWeather
 
 __all__ = [

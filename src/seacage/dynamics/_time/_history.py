@@ -6,9 +6,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.dynamics._time._line_loads import LineLoads
-from seacage.dynamics._time._statistics import Statistics
+from seacage.dynamics._time._statistics import Statistics, WaterLoad
 from seacage.dynamics._time._twines import PanelTwines
-from seacage.dynamics._time._water_load import WaterLoad
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -11,11 +11,11 @@ from seacage.conventions import Result
 from seacage.dynamics._kernel._march import REFRESH, March
 from seacage.dynamics._moored._ends import mooring_result
 from seacage.dynamics._parts._assembly import Assembly, Body
-from seacage.dynamics._time._history import History, Statistics
+from seacage.dynamics._time._history import History
 from seacage.dynamics._time._line_loads import line_loads
 from seacage.dynamics._time._simulation import Simulation
+from seacage.dynamics._time._statistics import Statistics, WaterLoad
 from seacage.dynamics._time._twines import panel_twines
-from seacage.dynamics._time._water_load import WaterLoad
 
 Node3 = Float[np.ndarray, "node 3"]
 PerQuantile = Float[np.ndarray, " quantile"]
