@@ -22,8 +22,12 @@ LOST = 1e12  # no cage bears such a force: the case has left the finite numbers 
 
 
 def start_relaxing(assembly: Assembly, flow: SteadyFlow) -> Relaxing:
-    """Cases at rest in the design shape."""
-    damping = _damping(assembly, flow)
+    """Cases at rest in the design shape.
+
+    A step takes more of the velocity where the water outweighs the weights. Tuned on the reference
+    cage: the slowest swing is then near critical damping.
+    """
+    damping = np.minimum(0.01 + 0.05 * np.sqrt(load_over_weight(assembly, flow)), 0.2)
     start = np.repeat(assembly.position[None], len(damping), axis=0)
     return Relaxing.begun(start, len(assembly.bars.length), damping)
 
@@ -105,14 +109,6 @@ def _fictitious_mass(
     stiffness[assembly.springs.nodes] += assembly.springs.stiffness.max(axis=1)
     stiffness[assembly.ground.nodes] += assembly.ground.stiffness
     return 0.6 * stiffness
-
-
-def _damping(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:
-    """Share of velocity to lose in a step: more where the water outweighs the weights.
-
-    Tuned on the reference cage: the slowest swing is then near critical damping.
-    """
-    return np.minimum(0.01 + 0.05 * np.sqrt(load_over_weight(assembly, flow)), 0.2)
 
 
 def load_over_weight(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:

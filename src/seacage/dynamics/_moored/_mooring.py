@@ -73,7 +73,7 @@ def anchor_assembly(cage: Cage) -> Assembly:
         cylinders=_cylinders(cage, base, frame, anchors),
         floats=_floats(cage, base, lift),
         springs=Springs.none(),
-        ground=_ground(cage, base, anchors, mass),
+        ground=Ground.under(_hung_nodes(base, anchors), mass, cage.site.water_depth),
     )
 
 
@@ -243,10 +243,15 @@ def _slender(base: Assembly, lines: _AnchorLines) -> Slender:
     # the node before each along its line and the one after
     before, after = np.zeros((2, first + count), dtype=np.int64)
     before[bars.ends[:, 1]], after[bars.ends[:, 0]] = bars.ends[:, 0], bars.ends[:, 1]
-    nodes = first + np.flatnonzero(~lines.is_anchor)
+    nodes = _hung_nodes(base, lines)
     position = np.vstack([base.position, lines.position])
     tangent, _ = direction(position, np.column_stack([before[nodes], after[nodes]]))
     return Slender(nodes=nodes, tangent=tangent, added_mass=added[nodes])
+
+
+def _hung_nodes(base: Assembly, lines: _AnchorLines) -> Int[np.ndarray, " node"]:
+    """Nodes of the anchor lines but the anchors."""
+    return len(base.position) + np.flatnonzero(~lines.is_anchor)
 
 
 def _cylinders(cage: Cage, base: Assembly, frame: Bars, lines: _AnchorLines) -> Cylinders:
@@ -273,11 +278,3 @@ def _floats(cage: Cage, base: Assembly, lift: Float[np.ndarray, " corner"]) -> F
         height=np.full(len(lift), frame.buoy_buoyancy / stiffness),
     )
     return Floats.joined(base.floats, buoys)
-
-
-def _ground(
-    cage: Cage, base: Assembly, lines: _AnchorLines, mass: Float[np.ndarray, " node"]
-) -> Ground:
-    """The sea bed under the lines' nodes."""
-    nodes = len(base.position) + np.flatnonzero(~lines.is_anchor)
-    return Ground.under(nodes, mass, cage.site.water_depth)

@@ -46,7 +46,7 @@ def assemble_structure(structure: Structure) -> Assembly:
     that is built with a tie or line far too short, and one with a node that weighs nothing.
     """
     _check_lengths(structure)
-    members = _members(structure)
+    members = [*_rings(structure), *_ties(structure), *_lines(structure)]
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
     panels = Panels.joined(Panels.none(), *(_panels(structure, index) for index in wet_nets))
@@ -102,11 +102,6 @@ class _Member:
     weighs: bool = True  # a brace's diagonals stand for stiff joints, and weigh nothing
     is_line: bool = False
     each: int = 0  # bars of each rope of a tie
-
-
-def _members(structure: Structure) -> list[_Member]:
-    """Rings, ties and lines, in this order."""
-    return [*_rings(structure), *_ties(structure), *_lines(structure)]
 
 
 def _rings(structure: Structure) -> Iterator[_Member]:
