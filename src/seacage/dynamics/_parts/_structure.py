@@ -50,11 +50,11 @@ def assemble_structure(structure: Structure) -> Assembly:
     position = structure.design_position
     wet_nets = [index for index, net in enumerate(structure.net) if not structure.is_dry(net)]
     panels = Panels.joined(Panels.none(), *(_panels(structure, index) for index in wet_nets))
-    bars = Bars.joined(Bars.none(), *_net_bars(structure), *(_bars(member) for member in members))
+    bars = Bars.joined(Bars.none(), *_net_bars(structure), *(member.bars for member in members))
     lumps = _lumps(structure, members)
     _check_floats(structure, members)
     _check_masses(structure, lumps)
-    first = len(bars.length) - sum(len(member.ends) for member in members)
+    first = len(bars.length) - sum(len(member.bars.ends) for member in members)
     bridles, ropes = (_first_bars(members, first, is_line=one) for one in (True, False))
     fixed = np.zeros(len(position), dtype=bool)
     fixed[structure.anchor_nodes] = True
@@ -93,12 +93,10 @@ def assemble_structure(structure: Structure) -> Assembly:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Member:
-    """Bars of one section, and whether they bear a push where their section does not say."""
+    """Bars of one section."""
 
     section: Section
-    ends: Int[np.ndarray, "bar 2"]
-    length: Float[np.ndarray, " bar"]
-    pushed: bool
+    bars: Bars
     weighs: bool = True  # a brace's diagonals stand for stiff joints, and weigh nothing
     is_line: bool = False
     each: int = 0  # bars of each rope of a tie
@@ -142,31 +140,25 @@ def _member(
 ) -> _Member:
     """Bars of a part's section, as long as given [m] or, at 0, as built."""
     section = structure.section_of(part)
-    length = np.full(len(ends), given) if given else span(structure.design_position, ends)
-    bears = pushed or section.is_pipe
-    return _Member(section=section, ends=ends, length=length, pushed=bears, **kind)
+    bars = Bars.alike(
+        ends,
+        given or span(structure.design_position, ends),
+        section.axial_stiffness,
+        damping_ratio=section.damping_ratio,
+        pushed=pushed or section.is_pipe,
+    )
+    return _Member(section=section, bars=bars, **kind)
 
 
 def _first_bars(members: list[_Member], first: int, *, is_line: bool) -> Int[np.ndarray, " line"]:
     """First bar of each line, or of each rope of a tie; the members' bars begin at ``first``."""
     bars = list[int]()
     for member in members:
-        each = len(member.ends) if is_line else member.each
+        each = len(member.bars.ends) if is_line else member.each
         if each and member.is_line == is_line:
-            bars += range(first, first + len(member.ends), each)
-        first += len(member.ends)
+            bars += range(first, first + len(member.bars.ends), each)
+        first += len(member.bars.ends)
     return np.array(bars, dtype=np.int64)
-
-
-def _bars(member: _Member) -> Bars:
-    section = member.section
-    return Bars.alike(
-        member.ends,
-        member.length,
-        section.axial_stiffness,
-        damping_ratio=section.damping_ratio,
-        pushed=member.pushed,
-    )
 
 
 def _net_bars(structure: Structure) -> list[Bars]:
@@ -316,10 +308,10 @@ def _lumps(structure: Structure, members: list[_Member]) -> _Lumps:
     lumps = _Lumps(structure.design_position)
     for member in members:
         section = member.section
-        half = np.repeat(member.length / 2.0, 2) * member.weighs
+        half = np.repeat(member.bars.length / 2.0, 2) * member.weighs
         mass, displaced = section.mass * half, section.displaced_mass * half
         box = section.box_height if section.is_pipe and member.weighs else None
-        lumps.put(member.ends.ravel(), mass, displaced, section.added_mass_coefficient, box)
+        lumps.put(member.bars.ends.ravel(), mass, displaced, section.added_mass_coefficient, box)
     for index in range(len(structure.net)):
         _put_net(structure, index, lumps)
     for node, point in zip(structure.point_nodes, structure.point, strict=True):
@@ -346,14 +338,14 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
 def _cylinders(member: _Member, position: Float[np.ndarray, "node 3"]) -> Cylinders:
     """A pipe with the share of its diameter that is wet in still water, or a rope."""
     section = member.section
-    wet = np.full(len(member.ends), float(member.weighs))
+    wet = np.full(len(member.bars.ends), float(member.weighs))
     if section.is_pipe:
-        wet *= wet_share(position[member.ends, 2], section.box_height).mean(axis=1)
+        wet *= wet_share(position[member.bars.ends, 2], section.box_height).mean(axis=1)
     met = wet > 0.0
-    afloat = position[member.ends, 2].mean(axis=1) > -section.box_height
+    afloat = position[member.bars.ends, 2].mean(axis=1) > -section.box_height
     body = np.where(afloat, Body.COLLAR, Body.TUBE) if section.is_pipe else Body.ROPES
     return Cylinders(
-        ends=member.ends[met],
+        ends=member.bars.ends[met],
         drag_width=section.drag_coefficient * section.diameter * wet[met],
         skin_width=section.skin_coefficient * section.diameter * wet[met],
         body=np.broadcast_to(body, len(met))[met].astype(np.int64),
@@ -395,7 +387,7 @@ def _check_floats(structure: Structure, members: list[_Member]) -> None:
     """Refuse a structure that goes down with all it carries but its mooring."""
     weight = lift = 0.0
     for member in members:
-        length = float(np.sum(member.length)) * member.weighs * (not member.is_line)
+        length = float(np.sum(member.bars.length)) * member.weighs * (not member.is_line)
         lift += member.section.displaced_mass * length * GRAVITY
         weight += member.section.mass * length * GRAVITY
     for index, net in enumerate(structure.net):
