@@ -25,6 +25,6 @@ def instant(time: datetime) -> np.datetime64:
     return np.datetime64(microseconds(time), "us")
 
 
-def moment(time: np.datetime64) -> datetime:
-    """NumPy's time, which is UTC and does not say so, as one that does."""
-    return _EPOCH + int(time.astype("datetime64[us]").astype(np.int64)) * _MICROSECOND
+def moment(time: np.datetime64 | int) -> datetime:
+    """NumPy's time, or microseconds since 1970, as a time that says that it is UTC."""
+    return _EPOCH + int(np.datetime64(time, "us").astype(np.int64)) * _MICROSECOND

@@ -223,18 +223,11 @@ def _stretch_findings(
             last = row
 
 
-def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> list[Amendment]:
-    t = moment(np.datetime64(anchor.time, "us"))
-    return [
-        Amendment(
-            stream=stream,
-            t=t,
-            key=one.key,
-            flag=one.flag,
-            remark=_sentence(stream, anchor.values, one),
-        )
-        for one in found
-    ]
+def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> Iterator[Amendment]:
+    t = moment(anchor.time)
+    for one in found:
+        remark = _sentence(stream, anchor.values, one)
+        yield Amendment(stream=stream, t=t, key=one.key, flag=one.flag, remark=remark)
 
 
 def _sentence(stream: str, values: Mapping[str, float], finding: Finding) -> str:

@@ -10,8 +10,6 @@ its own in a file like it.
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
-from typing import Any
 
 from seacage.conventions import read_packaged_table
 
@@ -88,20 +86,12 @@ class Season:
     range: Range
 
 
-@cache
-def _defaults() -> Mapping[str, Any]:
-    return read_packaged_table("seacage.records", "limits.toml")
-
-
-def _ranges() -> dict[str, Range]:
-    return {
-        key: Range(fail=tuple(one["fail"]), suspect=tuple(one["suspect"]))
-        for key, one in _defaults()["ranges"].items()
-    }
-
-
-def _steadiness() -> dict[str, Steadiness]:
-    return {group: Steadiness(**one) for group, one in _defaults()["steadiness"].items()}
+_TABLES = read_packaged_table("seacage.records", "limits.toml")
+_RANGES = {
+    key: Range(fail=tuple(one["fail"]), suspect=tuple(one["suspect"]))
+    for key, one in _TABLES["ranges"].items()
+}
+_STEADINESS = {group: Steadiness(**one) for group, one in _TABLES["steadiness"].items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,8 +104,8 @@ class Limits:
     no default.
     """
 
-    ranges: Mapping[str, Range] = field(default_factory=_ranges)
-    steadiness: Mapping[str, Steadiness] = field(default_factory=_steadiness)
+    ranges: Mapping[str, Range] = field(default_factory=_RANGES.copy)
+    steadiness: Mapping[str, Steadiness] = field(default_factory=_STEADINESS.copy)
     climatology: Mapping[str, tuple[Season, ...]] = field(
         default_factory=dict[str, tuple[Season, ...]]
     )

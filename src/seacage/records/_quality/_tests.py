@@ -2,18 +2,17 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime, timedelta
 from typing import NamedTuple
 
 from seacage.conventions import GRAVITY, Flag
 from seacage.ocean import steepness_limit
 from seacage.records._quality._limits import GROUPS, Limits, Range, Steadiness
+from seacage.records._times import moment
 
 SECOND = 1_000_000
 FLAT_SUSPECT_COUNT, FLAT_FAIL_COUNT = 3, 5
 BUCKETS = 64
 ATTENUATED = "attenuated signal"
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 Point = tuple[float, ...]
 """Where a group is, so that distances are changes: a current in east and north, waves in hs."""
 
@@ -108,7 +107,7 @@ def _range_finding(key: str, value: float, limits: Range, test: str) -> Finding 
 
 
 def _climatology_findings(time: int, values: Mapping[str, float], limits: Limits) -> list[Finding]:
-    month = (_EPOCH + timedelta(microseconds=time)).month
+    month = moment(time).month
     findings: list[Finding] = []
     for key, value in values.items():
         for season in limits.climatology.get(key, ()):
@@ -213,12 +212,9 @@ def _attenuation_findings(group: str, after: Anchor, limits: Steadiness) -> list
     full = after.time - spread.began >= limits.attenuated_s * SECOND
     if not full or len(spread.closed) + 1 < FLAT_FAIL_COUNT or not after.point:
         return []
-    size = max(
-        max(high, closed_high) - min(low, closed_low)
-        for low, high, closed_low, closed_high in zip(
-            spread.low, spread.high, spread.closed_low, spread.closed_high, strict=True
-        )
-    )
+    low = map(min, spread.low, spread.closed_low)
+    high = map(max, spread.high, spread.closed_high)
+    size = max(most - least for least, most in zip(low, high, strict=True))
     for flag, limit in (
         (Flag.FAIL, limits.attenuated_fail),
         (Flag.SUSPECT, limits.attenuated_suspect),
@@ -246,7 +242,7 @@ def _steadiness_findings(
     if elapsed > limits.gap_s:
         why = f"comes after {elapsed / 3600:.3g} h of silence (limit {limits.gap_s / 3600:g} h)"
         return [Finding(key, Flag.SUSPECT, why, "gap") for key in keys]
-    change = _change(group, before.values, after.values)
+    change = _change(before.point, after.point)
     allowed = limits.jump + limits.rate * elapsed
     if change > allowed:
         why = f"changed by {change:.3g} in {elapsed:g} s (limit {allowed:.3g})"
@@ -263,15 +259,10 @@ def _steadiness_findings(
     return [Finding(key, flag, why, "flat line") for key in keys]
 
 
-def _change(group: str, before: Mapping[str, float], after: Mapping[str, float]) -> float:
+def _change(before: Point, after: Point) -> float:
     """Of the current's vector, of hs, of the value; 0 where one side has none."""
-    key = GROUPS[group][0]
-    if key not in before or key not in after:
+    if not before or not after:
         return 0.0
-    if group != "current":
-        return abs(after[key] - before[key])
-    a, b = before[key], after[key]
-    to = "current_to_deg"
-    turn = math.radians(after[to] - before[to]) if to in before and to in after else 0.0
-    # The cosine rule; max, because rounding may leave a hair below zero.
-    return math.sqrt(max(a * a + b * b - 2.0 * a * b * math.cos(turn), 0.0))
+    if len(before) != len(after):  # one side has no direction
+        return abs(math.hypot(*after) - math.hypot(*before))
+    return math.dist(before, after)
