@@ -10,8 +10,9 @@ from jaxtyping import Bool, Float, Int, Shaped
 from seacage.conventions import Flag, InputError
 from seacage.records._quality._limits import GROUPS
 from seacage.records._record import Record
-from seacage.records._times import instant
+from seacage.records._times import microseconds
 
+_CURRENT = {"current_speed_m_s", "current_to_deg"}
 _OPPOSED = 0.1  # where the mean of unit vectors is shorter, they have no common direction [-]
 
 
@@ -75,7 +76,9 @@ def aligned(
     values: dict[str, np.ndarray] = {}
     flags: dict[str, np.ndarray] = {}
     for keys in GROUPS.values():
-        for part in _parts(tuple(key for key in keys if key in record.values)):
+        known = tuple(key for key in keys if key in record.values)
+        # A current is averaged whole, all else key by key.
+        for part in [known] if set(known) >= _CURRENT else [(key,) for key in known]:
             found, flag = _average(record, part, times, clock)
             values |= found
             flags |= dict.fromkeys(part, flag)
@@ -95,16 +98,9 @@ def _times(
     spoken = record.time.astype(np.int64)
     if not len(record) and (start is None or end is None):
         return np.array([], dtype="datetime64[us]")
-    first = int(spoken[0]) + lag if start is None else int(instant(start).astype(np.int64))
-    stop = int(spoken[-1]) + lag + every if end is None else int(instant(end).astype(np.int64))
+    first = int(spoken[0]) + lag if start is None else microseconds(start)
+    stop = int(spoken[-1]) + lag + every if end is None else microseconds(end)
     return (np.arange(-(-first // every), -(-stop // every)) * every).view("datetime64[us]")
-
-
-def _parts(keys: tuple[str, ...]) -> tuple[tuple[str, ...], ...]:
-    """A current is averaged whole, all else key by key."""
-    if set(keys) >= {"current_speed_m_s", "current_to_deg"}:
-        return (keys,)
-    return tuple((key,) for key in keys)
 
 
 def _average(

@@ -134,9 +134,10 @@ def read_campaign(path: str | Path) -> CampaignRecord:
             f"{path}: every case of this campaign has been run, but their second moment is not "
             "summed yet. Say `seacage campaign finish` with this folder."
         )
+    seas = zip(*(variables.pop(name).tolist() for name in SEA), strict=True)
     return CampaignRecord(
         cage_toml=attributes["cage"],
-        seas=_seas({name: variables.pop(name) for name in SEA}),
+        seas=tuple(SeaState(**dict(zip(SEA, row, strict=True))) for row in seas),
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
@@ -178,8 +179,3 @@ def _open(path: Path) -> "xarray.Dataset":
 
 def _words(text: str) -> tuple[str, ...]:
     return tuple(text.split(", ")) if text else ()
-
-
-def _seas(variables: Mapping[str, np.ndarray]) -> tuple[SeaState, ...]:
-    columns = zip(*(variables[name].tolist() for name in SEA), strict=True)
-    return tuple(SeaState(**dict(zip(SEA, row, strict=True))) for row in columns)
