@@ -45,12 +45,11 @@ from seacage.records._quality._limits import (
 )
 from seacage.records._quality._limits_file import read_limits
 from seacage.records._readers._cf import NetcdfMap
-from seacage.records._readers._column_map import Column, ColumnMap
+from seacage.records._readers._column_map import Column, ColumnMap, shipped_maps
 from seacage.records._readers._csv import check_rows, read_rows
 from seacage.records._readers._inspect import Inspection, inspect_file
 from seacage.records._readers._netcdf import write_record
 from seacage.records._readers._reader import known_map, read_map, read_record
-from seacage.records._readers._shipped import shipped_maps
 from seacage.records._record import Record
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant, moment

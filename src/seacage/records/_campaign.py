@@ -111,17 +111,14 @@ def read_campaign(path: str | Path) -> CampaignRecord:
     """
     path = Path(path)
     with _open(path) as dataset:
-        variables = {name: np.asarray(dataset[name].values) for name in (*SEA, *MEAN, "result")}
-        variables |= {
-            part.name: np.asarray(dataset[part.name].values)
-            for part in fields(CampaignRecord)
-            if part.default is None and part.name in dataset.variables
-        }
-        attributes = dict(dataset.attrs)
+        attributes, there = dict(dataset.attrs), {str(name) for name in dataset.variables}
+        optional = (part.name for part in fields(CampaignRecord) if part.default is None)
+        names = there.intersection((*SEA, *MEAN, "result", *optional))
+        variables = {name: np.asarray(dataset[name].values) for name in names}
         lines = {
             name: np.asarray(dataset[f"line_{name}"].values)
             for name in LINES
-            if f"line_{name}" in dataset.variables
+            if f"line_{name}" in there
         }
     missing = int(np.sum(variables["result"] == NOT_RUN))
     if missing:

@@ -134,12 +134,11 @@ def create_campaign(
     size = {"case": len(seas), "block": -(-len(seas) // block)}
     size |= {"node": nodes, "axis": 3, "line": lines, "quantile": len(quantile_levels)}
     size |= {"coordinate": 3 * nodes, "other_coordinate": 3 * nodes}
+    size |= {"mooring_line": 0 if mooring is None else len(mooring.names)}
     chunk = {**size, "case": min(block, len(seas)), "block": 1}
     given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
     given |= {"wave_seed": wave_seeds, "mooring_seed": mooring_seeds, "quantile": quantile_levels}
     if mooring is not None:
-        size |= {"mooring_line": len(mooring.names)}
-        chunk |= size | {"case": chunk["case"], "block": 1}
         given |= {f"line_{name}": getattr(mooring, name) for name in CONSTANT}
         words = {"line_names": mooring.names, "line_kinds": mooring.kinds}
         attributes = {**attributes, **{name: ", ".join(each) for name, each in words.items()}}

@@ -27,4 +27,4 @@ def instant(time: datetime) -> np.datetime64:
 
 def moment(time: np.datetime64 | int) -> datetime:
     """NumPy's time, or microseconds since 1970, as a time that says that it is UTC."""
-    return _EPOCH + int(np.datetime64(time, "us").astype(np.int64)) * _MICROSECOND
+    return _EPOCH + int(np.asarray(time, "datetime64[us]").astype(np.int64)) * _MICROSECOND

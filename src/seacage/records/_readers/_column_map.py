@@ -5,6 +5,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta, timezone
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Self
 
@@ -260,12 +262,12 @@ class ColumnMap:
 
         Each time in it must say its zone. It counts as measured.
         """
-        held_by = {quantity.key: (name, quantity) for name, quantity in _QUANTITIES.items()}
-        columns: list[Column] = []
-        for key in keys:
-            name, quantity = held_by[key]
-            unit = next(iter(quantity.units))
-            columns.append(Column(name=key, quantity=name, unit=unit, sense=quantity.sense or ""))
+        columns = (
+            Column(name=key, quantity=name, unit=next(iter(one.units)), sense=one.sense or "")
+            for key in keys
+            for name, one in _QUANTITIES.items()
+            if one.key == key
+        )
         return cls(
             title="Table in house units",
             origin=Origin.MEASURED,
@@ -344,6 +346,17 @@ class ColumnMap:
         if not depths:
             return ""
         return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
+
+
+@cache
+def shipped_maps() -> Mapping[str, ColumnMap]:
+    """By name, the column maps of the package: buoys, a current profile and a wave hindcast."""
+    return {
+        file.name.removesuffix(".toml"): ColumnMap.from_toml(
+            file.read_text(encoding="utf-8"), where=file.name
+        )
+        for file in sorted((files("seacage.records") / "maps").iterdir(), key=lambda one: one.name)
+    }
 
 
 def parse_time(text: str, form: str) -> datetime:

@@ -9,9 +9,8 @@ import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
 from seacage.records._keys import KEYS
-from seacage.records._readers._column_map import Column, ColumnMap, vectors_joined
+from seacage.records._readers._column_map import Column, ColumnMap, shipped_maps, vectors_joined
 from seacage.records._readers._ndbc import is_ndbc, ndbc_table
-from seacage.records._readers._shipped import shipped_maps
 from seacage.records._readers._table import PLAIN, Table, read_table, read_text, text_table
 from seacage.records._record import Record
 from seacage.records._times import microseconds
@@ -191,9 +190,8 @@ def _difference(table: Table, columns: ColumnMap) -> str:
 
 
 def _times(table: Table, columns: ColumnMap) -> np.ndarray:
-    times = [
-        _time(row, line, table, columns) for row, line in zip(table.rows, table.lines, strict=True)
-    ]
+    rows = zip(table.rows, table.lines, strict=True)
+    times = [_time(row, line, table, columns) for row, line in rows]
     return np.array(times, dtype=np.int64).view("datetime64[us]")
 
 
@@ -220,11 +218,8 @@ def _numbers(table: Table, column: Column, decimal: str) -> tuple[np.ndarray, li
     """The column as numbers, NaN where there is none, and a note on text that is none."""
     cells = table.column(column.name)
     numbers = [number_in(cell, decimal) for cell in cells]
-    strange = [
-        (line, cell)
-        for line, cell, number in zip(table.lines, cells, numbers, strict=True)
-        if number is None
-    ]
+    rows = zip(table.lines, cells, numbers, strict=True)
+    strange = [(line, cell) for line, cell, number in rows if number is None]
     notes: list[str] = []
     if strange:
         line, cell = strange[0]

@@ -56,11 +56,11 @@ def ndbc_table(path: Path, text: str) -> tuple[Table, ColumnMap]:
         for number, line in enumerate(text.splitlines(), start=1)
         if line.strip() and (number <= 2 or not line.startswith("#"))
     ]
-    header = numbered[0][1]
-    header = ("YY", *header[1:])  # older files spell it YYYY
+    header = ("YY", *numbered[0][1][1:])  # older files spell it YYYY
     units = dict(zip(header, numbered[1][1], strict=False)) if "\n#" in text[:2000] else None
-    rows = [header, *(cells for _, cells in numbered[1 if units is None else 2 :])]
-    lines = [1, *(number for number, _ in numbered[1 if units is None else 2 :])]
+    body = numbered[1 if units is None else 2 :]
+    rows = [header, *(cells for _, cells in body)]
+    lines = [1, *(number for number, _ in body)]
     table = make_table(path, rows, lines, cut=not text.endswith(("\n", "\r")))
     return table, _map(table, units)
 

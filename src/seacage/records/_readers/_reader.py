@@ -10,10 +10,9 @@ from seacage.conventions import Flag, RecordError, read_text
 from seacage.records._quality._check import check_record
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
-from seacage.records._readers._column_map import ColumnMap
+from seacage.records._readers._column_map import ColumnMap, shipped_maps
 from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
-from seacage.records._readers._shipped import shipped_maps
 from seacage.records._record import Record
 
 _NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
