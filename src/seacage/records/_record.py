@@ -56,7 +56,9 @@ class Record:
                 f"{self.stream}: the times of a record ascend, each once. "
                 "Sort them and keep one row of each time, or use read_record, which does."
             )
-        values = {key: _fold(key, column) for key, column in self.values.items()}
+        values = {key: np.asarray(one, dtype=np.float64) for key, one in self.values.items()}
+        for key in DIRECTIONS.intersection(values):  # as in a sample
+            values[key] = np.where(values[key] == 360.0, 0.0, values[key])
         unseen = np.full(time.shape, Flag.NOT_EVALUATED, dtype=np.uint8)
         flags = {key: np.asarray(self.flags.get(key, unseen), dtype=np.uint8) for key in values}
         for key, column in values.items():
@@ -115,9 +117,3 @@ class Record:
                 values=dict(zip(keys, value, strict=True)),
                 flags={key: Flag(one) for key, one in zip(keys, flag, strict=True)},
             )
-
-
-def _fold(key: str, column: np.ndarray) -> np.ndarray:
-    # At a door 360 degrees is 0; anything beyond is left for the check to flag.
-    numbers = np.asarray(column, dtype=np.float64)
-    return np.where(numbers == 360.0, 0.0, numbers) if key in DIRECTIONS else numbers

@@ -48,7 +48,11 @@ class Sample:
                 f"{self.stream}: the time {self.t.isoformat()} does not say its zone. "
                 "Give it with an offset, in UTC."
             )
-        values = {key: _fold(key, value) for key, value in self.values.items()}
+        # At a door 360 degrees is 0; anything beyond is left for the check to flag.
+        values = {
+            key: 0.0 if value == 360.0 and key in DIRECTIONS else float(value)
+            for key, value in self.values.items()
+        }
         object.__setattr__(self, "t", self.t.astimezone(UTC))
         object.__setattr__(self, "values", values)
         object.__setattr__(
@@ -67,8 +71,3 @@ def check_stream(name: str) -> None:
             f"{name!r} is no stream's name: up to 64 letters, digits, '_', '.' or '-', "
             "the first a letter or a digit."
         )
-
-
-def _fold(key: str, value: float) -> float:
-    # At a door 360 degrees is 0; anything beyond is left for the check to flag.
-    return 0.0 if value == 360.0 and key in DIRECTIONS else float(value)

@@ -30,24 +30,21 @@ def read_limits(path: Path | str) -> Limits:
     """
     where = str(path)
     table = parse_toml(read_text(path, refusal=RecordError), where, refusal=RecordError)
-    names = ("ranges", "steadiness", "climatology")
-    check_names(table, names, where=where)
-    ranges, steadiness, climatology = (
-        table_of(table, name, where=where, default={}) for name in names
-    )
-    return Limits(
-        ranges={**DEFAULT_LIMITS.ranges, **_ranges(ranges, where)},
-        steadiness={**DEFAULT_LIMITS.steadiness, **_steadiness(steadiness, where)},
-        climatology=_climatology(climatology, where),
-    )
-
-
-def _ranges(table: Table, where: str) -> dict[str, Range]:
-    check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [ranges]")
-    return {
-        key: parse_range(table_of(table, key, where=where), DEFAULT_LIMITS.ranges[key], where)
-        for key in table
+    usual, steady = DEFAULT_LIMITS.ranges, DEFAULT_LIMITS.steadiness
+    known = {"ranges": usual, "steadiness": steady, "climatology": usual}
+    check_names(table, known, where=where)
+    parts = {name: table_of(table, name, where=where, default={}) for name in known}
+    for name, part in parts.items():
+        check_names(part, known[name], where=f"{where}, [{name}]")
+    ranges = {
+        key: parse_range(table_of(parts["ranges"], key, where=where), usual[key], where)
+        for key in parts["ranges"]
     }
+    return Limits(
+        ranges={**usual, **ranges},
+        steadiness={**steady, **_steadiness(parts["steadiness"], where)},
+        climatology=_climatology(parts["climatology"], where),
+    )
 
 
 def parse_range(table: Table, usual: Range, where: str) -> Range:
@@ -72,7 +69,6 @@ def _pair(table: Table, name: str, where: str) -> tuple[float, float] | None:
 
 
 def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
-    check_names(table, DEFAULT_LIMITS.steadiness, where=f"{where}, [steadiness]")
     changed: dict[str, Steadiness] = {}
     for group in table:
         inside = f"{where}, [steadiness.{group}]"
@@ -84,7 +80,6 @@ def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
 
 
 def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
-    check_names(table, DEFAULT_LIMITS.ranges, where=f"{where}, [climatology]")
     seasons: dict[str, tuple[Season, ...]] = {}
     for key in table:
         inside = f"{where}, [[climatology.{key}]]"
