@@ -89,10 +89,8 @@ class AlarmPolicy:
 
     def limit(self, name: str) -> Limit:
         """Return the limit of an alarm."""
-        limits = self.limits
-        if name in limits:
-            return limits[name]
-        return limits.get(name.partition(".")[0], limits[FAULT])
+        names = (name, name.partition(".")[0], FAULT)
+        return next(self.limits[one] for one in names if one in self.limits)
 
 
 def alarm_names(cage: Cage, buoy: str) -> frozenset[str]:
