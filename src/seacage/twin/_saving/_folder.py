@@ -105,7 +105,9 @@ def read_folder(
         )
     manifest = _content(folder, MANIFEST)
     signed = SIGNATURE in found
-    if key is not None and not (signed and _is_signed(key, manifest, _content(folder, SIGNATURE))):
+    if key is not None and not (
+        signed and hmac.compare_digest(_signature(key, manifest), _content(folder, SIGNATURE))
+    ):
         raise ModelError(
             f"{folder} is {'signed by another key' if signed else 'not signed'}, and only twins "
             "that the key of the settings signs are taken. Train it with --sign KEYFILE."
@@ -131,11 +133,6 @@ def _content(folder: Path, name: str) -> bytes:
 def _signature(key: bytes, manifest: bytes) -> bytes:
     """Sign a manifest, and so all files that it has the sums of: a line of HMAC-SHA256."""
     return hmac.new(key, manifest, hashlib.sha256).hexdigest().encode() + b"\n"
-
-
-def _is_signed(key: bytes, manifest: bytes, signed: bytes) -> bool:
-    """Whether a signature is that of a manifest, compared in constant time."""
-    return hmac.compare_digest(_signature(key, manifest), signed)
 
 
 def _arrays(content: bytes, path: Path) -> dict[str, np.ndarray]:

@@ -105,7 +105,12 @@ def to_parts(
         cage_toml=models.cage.to_toml(),
         domain=_box(models.domain),
         **_of_loads(models.loads),
-        parted=tuple(_of_parted(one) for one in models.parted.kinds) if models.parted else (),
+        parted=tuple(
+            PartedHeader(
+                domain=_box(one.domain), **{name: getattr(one, name) for name in _OF_PARTED}
+            )
+            for one in (models.parted.kinds if models.parted else ())
+        ),
         gains={name: model.gain for name, model in models.upper.items()},
         weights={name: model.weight for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
@@ -116,8 +121,8 @@ def to_parts(
     parts: dict[str, surrogates.Fitted] = {"bridles": models.bridles, "shape": models.shape}
     if models.loads is not None:
         parts["loads"] = models.loads.surrogate
-    if models.loads is not None and models.loads.motion is not None:
-        parts["motion"] = models.loads.motion
+        if models.loads.motion is not None:
+            parts["motion"] = models.loads.motion
     if models.parted is not None:
         parts |= {
             f"{PARTED}{one.line}/{name}": getattr(one.surrogate, name)
@@ -150,11 +155,6 @@ def _of_loads(loads: LineLoads | None) -> dict[str, Any]:
         return own
     rows = tuple(tuple(one) for one in loads.waves.table.tolist())
     return own | {"line_waves": rows, "line_waves_of": loads.waves.origin}
-
-
-def _of_parted(kind: PartedKind) -> PartedHeader:
-    own = {name: getattr(kind, name) for name in _OF_PARTED}
-    return PartedHeader(domain=_box(kind.domain), **own)
 
 
 def _box(domain: surrogates.Domain) -> Box:
@@ -209,30 +209,25 @@ def _discrepancy(
     return Discrepancy(origin=Origin(settings["origin"]), **own)
 
 
-def _symmetry(arrays: Mapping[str, np.ndarray], *, lines: int) -> surrogates.Symmetry | None:
-    start = f"{PARTED}:"
-    own = {key.removeprefix(start): each for key, each in arrays.items() if key.startswith(start)}
-    return surrogates.Symmetry.from_arrays(own, nodes=lines) if own else None
+def _arrays_of(part: str, arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    start = f"{part}:"
+    return {key.removeprefix(start): each for key, each in arrays.items() if key.startswith(start)}
 
 
 def _models(
     header: Header, settings: Mapping[str, Any], arrays: Mapping[str, np.ndarray]
 ) -> Models:
     def part(name: str, kind: type[Kind], **given: surrogates.Predicts) -> Kind:
-        own = {
-            key.removeprefix(f"{name}:"): values
-            for key, values in arrays.items()
-            if key.startswith(f"{name}:")
-        }
-        model = surrogates.decode(settings[name], own, **given)
+        model = surrogates.decode(settings[name], _arrays_of(name, arrays), **given)
         if not isinstance(model, kind):
             raise ModelError(f"{name} is a {type(model).__name__}, not a {kind.__name__}.")
         return model
 
+    gp, turns = surrogates.FittedGaussianProcess, _arrays_of(PARTED, arrays)
     models = Models(
         cage=Cage.from_toml(header.cage_toml),
         domain=_domain(header.domain),
-        bridles=part("bridles", surrogates.FittedGaussianProcess),
+        bridles=part("bridles", gp),
         shape=part("shape", surrogates.FittedShapeGP),
         loads=LineLoads(
             names=tuple(name for name, _ in header.lines),
@@ -250,19 +245,16 @@ def _models(
             kinds=tuple(
                 PartedKind(
                     surrogate=surrogates.LoadChange(
-                        **{
-                            name: part(
-                                f"{PARTED}{one.line}/{name}", surrogates.FittedGaussianProcess
-                            )
-                            for name in _CHANGES
-                        },
+                        **{name: part(f"{PARTED}{one.line}/{name}", gp) for name in _CHANGES}
                     ),
                     domain=_domain(one.domain),
                     **{name: getattr(one, name) for name in _OF_PARTED},
                 )
                 for one in header.parted
             ),
-            symmetry=_symmetry(arrays, lines=len(header.lines)),
+            symmetry=surrogates.Symmetry.from_arrays(turns, nodes=len(header.lines))
+            if turns
+            else None,
         )
         if header.parted
         else None,

@@ -1,10 +1,11 @@
 """Training: level 1 is fitted to simulations, level 2 of each sensor to its readings."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from importlib.metadata import version
+from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float
@@ -22,9 +23,9 @@ from seacage.surrogates import (
 )
 from seacage.twin._correction import Correction
 from seacage.twin._lines._site_waves import SiteWaves
-from seacage.twin._metocean import Input, Metocean, input_keys
+from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
-from seacage.twin._pairs import Pairs, align, spread_out, training_window
+from seacage.twin._pairs import align, spread_out, training_window
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
@@ -43,6 +44,7 @@ PAPER_WINDOW_S = {"depth_m": 300.0, "tension_kn": 10.0}
 # The paper's "few minutes" of a depth sensor and "few seconds" of a shackle [s], whose readings it
 # does not count; and the least consecutive readings of slow sensors
 PAPER_LEAST = 5
+Part = TypeVar("Part")
 
 
 def train(
@@ -182,7 +184,7 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
         if name not in field.sensors:
             continue
         pairs = align(field, name, start=windows[name].end, mean_s=mean_s)
-        pairs = _complete(pairs, models.inputs)
+        pairs = pairs.rows(pairs.metocean.known(models.inputs))
         if len(pairs) == 0:
             continue
         end = moment(pairs.time[-1]) + timedelta(seconds=mean_s)
@@ -211,25 +213,25 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
         )
     places = (*before.depth_sensors, *before.shackles)
     unmoved = {one.name for one in (*cage.depth_sensors, *cage.shackles) if one in places}
-    stay = [name for name in base.models.upper if name in unmoved]
-    windows = base.provenance.training_windows
+
+    def stay(parts: Mapping[str, Part]) -> dict[str, Part]:
+        return {name: one for name, one in parts.items() if name in unmoved}
+
+    models, provenance = base.models, base.provenance
+    upper = stay(models.upper)
     return replace(
         base,
         models=replace(
-            base.models,
+            models,
             cage=cage,
-            upper={name: base.models.upper[name] for name in stay},
-            line_upper={
-                name: one for name, one in base.models.line_upper.items() if name in unmoved
-            },
-            depth_ratio={
-                name: one for name, one in base.models.depth_ratio.items() if name in unmoved
-            },
+            upper=upper,
+            line_upper=stay(models.line_upper),
+            depth_ratio=stay(models.depth_ratio),
         ),
         provenance=replace(
-            base.provenance,
-            training_windows={name: windows[name] for name in stay},
-            origin=base.origin if stay else Origin.COMPUTED,
+            provenance,
+            training_windows={name: provenance.training_windows[name] for name in upper},
+            origin=base.origin if upper else Origin.COMPUTED,
             seed=training.seed,
         ),
     )
@@ -256,6 +258,9 @@ def _level_one(
         )
     water = Metocean.of(campaign.seas).rows(rows)
     x = water.features(training.inputs)
+    # Rounded up, as a campaign drawn from 0 to 1 m/s stops just short of it.
+    largest = np.linalg.norm(water.current_velocity, axis=1).max(), water.hs.max()
+    speed, hs = (math.ceil(100.0 * float(one)) / 100.0 for one in largest)
     bridles, kernel = _better_kernel(x, campaign.bridle_tension[rows], training)
     report("bridles", 1)
     shape = ShapeGP(restarts=training.restarts).fit(
@@ -278,7 +283,7 @@ def _level_one(
         cage=cage,
         inputs=training.inputs,
         domain=Domain.of(x),
-        edge=_edge(water),
+        edge=(speed, hs),
         still_volume=still_volume,
         bridles=bridles,
         shape=shape,
@@ -297,12 +302,6 @@ def _level_one(
         seed=training.seed,
     )
     return Twin(models=models, provenance=provenance)
-
-
-def _edge(water: Metocean) -> tuple[float, float]:
-    # Rounded up, as a campaign drawn from 0 to 1 m/s stops just short of it.
-    speed = float(np.linalg.norm(water.current_velocity, axis=1).max())
-    return math.ceil(100.0 * speed) / 100.0, math.ceil(100.0 * float(water.hs.max())) / 100.0
 
 
 def _better_kernel(
@@ -330,7 +329,7 @@ def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> Sen
     (start, end), paper = window, training.choice == "paper"
     mean_s = None if paper else training.mean_s
     pairs = align(field, sensor, start=start, end=end, mean_s=mean_s)
-    pairs = _complete(pairs, training.inputs)
+    pairs = pairs.rows(pairs.metocean.known(training.inputs))
     if paper:
         span = PAPER_WINDOW_S[next(iter(record.values))]
         second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
@@ -343,10 +342,6 @@ def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> Sen
     end = moment(pairs.time[-1]) + timedelta(microseconds=1) if paper else end
     own = TrainingWindow(start=start, end=end, points=len(selected))
     return SensorTraining(window=own, pairs=pairs, selected=selected, calibrates=not paper)
-
-
-def _complete(pairs: Pairs, inputs: tuple[Input, ...]) -> Pairs:
-    return pairs.rows(pairs.metocean.known(inputs))
 
 
 def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
