@@ -1,6 +1,6 @@
 """Key figures of the alarms over a span of time, counted from the journal."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -71,7 +71,11 @@ def alarm_kpi(journal: Iterable[AlarmEvent], *, start: datetime, end: datetime) 
         most_in_an_hour=_most_in_an_hour([line.t for line in notified]),
         standing=dict(sorted(standing.items(), key=lambda one: one[1])),
         longest_s=dict(sorted(longest.items(), key=lambda one: -one[1])),
-        chattering=_chattering(raises),
+        chattering=tuple(
+            name
+            for name in dict.fromkeys(line.alarm for line in raises)
+            if _most_in_an_hour([one.t for one in raises if one.alarm == name]) >= CHATTERING
+        ),
         to_acknowledge_s=median(seen) if seen else None,
         unacknowledged=len(waited) - len(seen),
     )
@@ -101,10 +105,3 @@ def _time_to_acknowledge(raised: AlarmEvent, lines: Sequence[AlarmEvent]) -> flo
 
 def _most_in_an_hour(times: Sequence[datetime]) -> int:
     return max((sum(t <= one < t + _HOUR for one in times) for t in times), default=0)
-
-
-def _chattering(raises: Sequence[AlarmEvent]) -> tuple[str, ...]:
-    times = defaultdict[str, list[datetime]](list)
-    for line in raises:
-        times[line.alarm].append(line.t)
-    return tuple(name for name, own in times.items() if _most_in_an_hour(own) >= CHATTERING)

@@ -31,29 +31,17 @@ class HeldSeas:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LineLoads:
-    """Surrogate of the loads of lines in waves.
+    """Surrogate of the loads of lines in waves."""
 
-    Parameters
-    ----------
-    names, kinds
-        Of the lines, the bridles first.
-    surrogate
-        Of their loads.
-    domain
-        Of the currents' speed [m/s], Hs [m], log(Tp / 1 s) and log(Tp / (5 sqrt(Hs))) that it was
-        trained on.
-    waves
-        Of the site, for buoys that do not measure all of them; None in twins of before.
-    motion
-        Surrogate of the nodes' motion in the same seas; None where it was not learned.
-    """
-
+    # Of the lines, the bridles first
     names: tuple[str, ...]
     kinds: tuple[str, ...]
-    surrogate: FittedLoadGP
+    surrogate: FittedLoadGP  # of their loads
+    # Of the currents' speed [m/s], Hs [m], log(Tp / 1 s) and log(Tp / (5 sqrt(Hs))) that it was
+    # trained on
     domain: Domain
-    waves: SiteWaves | None = None
-    motion: FittedMotionGP | None = None
+    waves: SiteWaves | None = None  # of the site, for buoys that lack some; None in older twins
+    motion: FittedMotionGP | None = None  # of the nodes in the same seas; None if not learned
 
     def predict(
         self, water: Metocean, *, duration: float = 1800.0, spread: bool = True
@@ -152,17 +140,12 @@ class LineLoads:
 
     def _near(self, water: Metocean, *, clip: bool = False) -> Metocean:
         """Water as low as the lowest of the training; with ``clip`` of a period of it too."""
-        least_ratio, most_ratio = self._ratios
+        least_ratio, most_ratio = np.exp([self.domain.lower[3], self.domain.upper[3]])
         low = water.hs < self.domain.lower[1]
         held = np.where(low, self.domain.lower[1], water.hs)
         ratio = np.clip(_ratio(water.tp, held), least_ratio, most_ratio)
         tp = np.where(low | clip, 5.0 * np.sqrt(held) * ratio, np.maximum(water.tp, 1e-3))
         return replace(water, hs=held, tp=tp)
-
-    @property
-    def _ratios(self) -> tuple[float, float]:
-        least, most = np.exp([self.domain.lower[3], self.domain.upper[3]])
-        return float(least), float(most)
 
 
 def sea_domain(water: Metocean) -> Domain:

@@ -92,7 +92,9 @@ def inspection_path(
     below
         Distance of ``p_below`` in the clearance of the waypoints [m].
     """
-    _check(stand_off=stand_off, row_spacing=row_spacing, step=step)
+    for name, size in {"stand_off": stand_off, "row_spacing": row_spacing, "step": step}.items():
+        if not (np.isfinite(size) and size > 0.0):
+            raise InputError(f"inspection: {name} = {size:g} m must be above 0 m.")
     rings = _rings(net)
     turn, spoke, row = _course(rings, pattern, row_spacing, step, top)
     base, sign = _on_net(rings, turn, spoke), -1.0 if side == "inside" else 1.0
@@ -118,12 +120,6 @@ def inspection_path(
         clearance=net.clearance(position, below=below),
         left_out=int(np.sum(~keep)),
     )
-
-
-def _check(**sizes: float) -> None:
-    for name, size in sizes.items():
-        if not (np.isfinite(size) and size > 0.0):
-            raise InputError(f"inspection: {name} = {size:g} m must be above 0 m.")
 
 
 def _course(
