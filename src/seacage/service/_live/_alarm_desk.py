@@ -133,13 +133,14 @@ class AlarmDesk:
         faults: Mapping[str, str] = MappingProxyType({}),
     ) -> tuple[AlarmEvent, ...]:
         """Assess every alarm once more, by the answer of a tick."""
+        fault = self._store.fault or self._store.lost or self._lost
         self._book, happened = assess(
             self._book,
             twin=self._twin,
             state=state,
             answered=answered,
             policy=self.policy,
-            trouble={**faults, **self._trouble()},
+            trouble={**faults, **({"history.store": fault} if fault else {})},
         )
         due = self._kept_at is None or abs(answered.t - self._kept_at) >= _KEPT_EVERY
         if happened or self._unkept or due:
@@ -176,10 +177,6 @@ class AlarmDesk:
             self._lost = f"The alarms that were kept cannot be read; they begin anew ({error})"
             _log.error("alarms lost", cage=self._cage, reason=self._lost)
             return AlarmBook.new()
-
-    def _trouble(self) -> dict[str, str]:
-        fault = self._store.fault or self._store.lost or self._lost
-        return {"history.store": fault} if fault else {}
 
     def _keep(self, happened: Sequence[AlarmEvent]) -> Future[None]:
         waited = [self._unkept.popleft() for _ in range(len(self._unkept))]

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from typing import Protocol, runtime_checkable
 
+_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 AHEAD_S = 60.0  # how far ahead of the wall a clock that follows its samples may go [s]
 
 
@@ -108,6 +109,11 @@ class ReplayClock:
         """Stand at a time again and run on from there."""
         self._start = start
         self._began = time.monotonic()
+
+
+def floor_time(t: datetime, step: timedelta) -> datetime:
+    """Return the last whole step since 1970 that a time has reached."""
+    return t - (t - _EPOCH) % step
 
 
 def latest_allowed(clock: Clock, ahead_s: float) -> datetime:

@@ -10,6 +10,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError
+from seacage.service._live._clock import floor_time
 from seacage.service._store._damage import Stretch
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import Action, AlarmEvent, Twin, damage_of_minutes
@@ -65,21 +66,21 @@ class DamageCounter:
         """
         if not self.lines:
             return
-        hour, minute = _floor(now, _HOUR), _floor(now, _MINUTE)
+        hour, minute = floor_time(now, _HOUR), floor_time(now, _MINUTE)
         if not self._begins:
             try:
                 self._begin(self.lines, minute, ()).result()
             except StoreError:  # a disk that takes nothing: the count begins once it does
                 self._begins = []
                 return
-        first = _floor(self._begins[0][1], _HOUR)
+        first = floor_time(self._begins[0][1], _HOUR)
         late = [t for t in arrived if t < hour]
         late += [hour - _DAY] * self._again  # what came just before a stop may not be counted
         self._again = False
         if late:
-            self._count(max(_floor(min(late), _HOUR), first), hour)
+            self._count(max(floor_time(min(late), _HOUR), first), hour)
         last = max((t for t in self._rows if t < hour), default=first - _HOUR)
-        start = _floor(last, _HOUR) + _HOUR
+        start = floor_time(last, _HOUR) + _HOUR
         if start < hour:
             self._count(start, min(hour, start + _DAY))
         if arrived or self._running is None or self._running[0] != minute:
@@ -87,14 +88,14 @@ class DamageCounter:
 
     def rewind(self, now: datetime) -> None:
         """Forget what was counted ahead of a clock that has stepped back."""
-        hour, minute = _floor(now, _HOUR), _floor(now, _MINUTE)
+        hour, minute = floor_time(now, _HOUR), floor_time(now, _MINUTE)
         ahead = {line for line, t in self._begins if t > minute}
         self._store.rewind_damage(self._name, hour, minute, sorted(ahead)).result()
         self.load()
 
     def at(self, t: datetime) -> Mapping[str, LineDamage]:
         """Return what the counters of the lines say at a time."""
-        hour, minute = _floor(t, _HOUR), _floor(t, _MINUTE)
+        hour, minute = floor_time(t, _HOUR), floor_time(t, _MINUTE)
         running, begins = self._running, dict[str, datetime]()
         for line, begin in self._begins:
             if begin <= t:
@@ -122,7 +123,7 @@ class DamageCounter:
             why=why,
         )
         self._running = None
-        return self._begin((line,), _floor(now, _MINUTE), (event,))
+        return self._begin((line,), floor_time(now, _MINUTE), (event,))
 
     def _begin(
         self, lines: Iterable[str], t: datetime, journal: Sequence[AlarmEvent]
@@ -174,7 +175,7 @@ class DamageCounter:
         damage = damage_of_minutes(self._twin, samples, start, count, known=self._known)
         damage = damage[:, self._columns]
         valid = np.asarray(np.isfinite(damage).all(axis=1))
-        cuts = {start, end, *_steps(_floor(start, _HOUR) + _HOUR, end, _HOUR)}
+        cuts = {start, end, *_steps(floor_time(start, _HOUR) + _HOUR, end, _HOUR)}
         cuts |= {t for _, t in self._begins if start < t < end}
         rows = list[Stretch]()
         for begin, until in pairwise(sorted(cuts)):
@@ -200,10 +201,6 @@ def _add(before: LineDamage, line: str, rows: Sequence[Stretch]) -> LineDamage:
         damage_valid_h=before.damage_valid_h + sum(one.valid for one in since) / 60.0,
         damage_missing_h=before.damage_missing_h + sum(one.missing for one in since) / 60.0,
     )
-
-
-def _floor(t: datetime, step: timedelta) -> datetime:
-    return t - (t - t.min.replace(tzinfo=t.tzinfo)) % step
 
 
 def _steps(start: datetime, end: datetime, step: timedelta) -> list[datetime]:

@@ -2,12 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk
-from seacage.service._live._clock import Clock
+from seacage.service._live._clock import Clock, floor_time
 from seacage.service._live._clock_faults import ClockFaults, Step
 from seacage.service._live._damage import DamageCounter
 from seacage.service._live._past import Past, answer_in, streams_of
@@ -23,7 +23,6 @@ _MOST_STEPS = 100  # of a clock that are remembered
 _CHUNKS = 3  # of samples of a stream that one step withdraws: the others wait for the next
 _UNKEPT = timedelta(days=1)  # of readings that the intervals are adapted to at a first start
 _CAUGHT_UP = timedelta(minutes=2)  # more than the alarm book is ever behind
-_EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 _log = structlog.get_logger(__name__)
 
 
@@ -105,7 +104,7 @@ class LiveTwin:
 
     def _look(self, now: datetime, *, ticked: bool) -> None:
         """Assess the alarms at full ticks of the clock, so that it does not matter who asks."""
-        due = self._tick(now)
+        due = floor_time(now, self._period)
         if due != self._looked:
             self._assess(due)
             self._looked = due
@@ -122,15 +121,12 @@ class LiveTwin:
         if last is None or last >= now:
             return
         end = min(now, last + _CAUGHT_UP)
-        at = self._tick(last) + self._period
+        at = floor_time(last, self._period) + self._period
         while at <= end:
             self._assess(at)
             self._looked = at
             at += self._period
         self.state, _ = self._twin.step(self.state, None, now)
-
-    def _tick(self, at: datetime) -> datetime:
-        return at - (at - _EPOCH) % self._period
 
     # Intervals
 

@@ -96,7 +96,10 @@ class Metrics:
 
     def count_alarms(self, cage: str, severities: Iterable[int]) -> None:
         """Say how many alarms of each severity there are."""
-        counts = Counted(_word(severity) for severity in severities)
+        counts = Counted(
+            next(word for least, word in _WORDS.items() if severity >= least)
+            for severity in severities
+        )
         for word in _WORDS.values():
             self.alarms.labels(cage, word).set(counts[word])
 
@@ -115,7 +118,3 @@ class _Part(Collector):
         for metric in self._whole.collect():
             metric.samples = [s for s in metric.samples if s.labels.get("cage") in self._cages]
             yield metric
-
-
-def _word(severity: int) -> str:
-    return next(word for least, word in _WORDS.items() if severity >= least)

@@ -96,7 +96,12 @@ class Past:
             if stream != twin.buoy:
                 samples += read(stream=stream, end=begin, limit=1)
             samples += read(stream=stream, start=begin, end=end, limit=_MOST)
-        state, _ = twin.receive(self._start_state(kept, until), samples, at)
+        try:
+            state = twin.start(kept.factors if kept else None, until=until)
+        except InputError as error:
+            _log.warning("intervals as trained", cage=self.cage, reason=str(error))
+            state = twin.start(until=until)
+        state, _ = twin.receive(state, samples, at)
         return replace(state, amendments=self.amendments_at(at))
 
     def _first_since(self, start: datetime) -> datetime | None:
@@ -105,13 +110,6 @@ class Past:
             for stream in streams_of(self.twin)
         )
         return min((samples[0].t for samples in found if samples), default=None)
-
-    def _start_state(self, kept: Adaptation | None, until: datetime) -> TwinState:
-        try:
-            return self.twin.start(kept.factors if kept else None, until=until)
-        except InputError as error:
-            _log.warning("intervals as trained", cage=self.cage, reason=str(error))
-            return self.twin.start(until=until)
 
 
 def buoy_record(twin: Twin, samples: Sequence[Sample]) -> Record:
