@@ -100,10 +100,8 @@ class MqttTransport:
                 raise InputError(f"The broker refuses this client: {self._refused}.")
             if not self._listening:
                 return self._take_settled()
-        by_stream: dict[str, list[Sample]] = {}
-        for one in samples:
-            by_stream.setdefault(one.stream, []).append(one)
-        for stream, of in by_stream.items():
+        for stream in dict.fromkeys(one.stream for one in samples):
+            of = [one for one in samples if one.stream == stream]
             topic = self._topics.samples(self._cage, stream)
             for first in range(0, len(of), _TOGETHER):
                 self._client.publish(topic, samples_text(of[first : first + _TOGETHER]), qos=1)
