@@ -29,7 +29,10 @@ def keep_alarms(
 
 def keep_lines(session: AbstractSession, cage: str, journal: Sequence[AlarmEvent]) -> None:
     """Add lines to the journal of a cage."""
-    lines = [(cage, microseconds(one.t), _line(one)) for one in journal]
+    lines = [
+        (cage, microseconds(one.t), json.dumps({key: getattr(one, key) for key in _KEYS}))
+        for one in journal
+    ]
     session.each(_KEEP_LINE, [with_checksum("journal", *line) for line in lines])
     recount(session, "journal", [(cage, "", t) for _, t, _ in lines])
 
@@ -45,10 +48,6 @@ def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list
     sql, values = _LINES + _ORDERS[bounds.newest], (cage, *bounds.us)
     rows = session.intact("journal", sql, values, (cage,), limit=bounds.limit)
     return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
-
-
-def _line(one: AlarmEvent) -> str:
-    return json.dumps({key: getattr(one, key) for key in _KEYS})
 
 
 def _event(t: int, line: str) -> AlarmEvent:

@@ -44,10 +44,13 @@ def cages(session: AbstractSession) -> list[str]:
 def days_before(session: AbstractSession, cage: str, before: int) -> Iterator[tuple[str, int]]:
     """Streams and days [µs] that have samples and end at or before a time [µs]."""
     for (stream,) in session.rows(_STREAMS, (cage, cage)):
-        day = _next_day(session, cage, stream, -(2**62))
-        while day is not None and day + DAY_US <= before:
+        start = -(2**62)
+        while (t := session.rows(_NEXT, (cage, stream, start))[0][0]) is not None:
+            day = t - t % DAY_US
+            start = day + DAY_US
+            if start > before:
+                break
             yield stream, day
-            day = _next_day(session, cage, stream, day + DAY_US)
 
 
 def rows_of_day(session: AbstractSession, cage: str, stream: str, day: int) -> list[SampleRow]:
@@ -66,11 +69,6 @@ def delete(session: AbstractSession, cage: str, rows: Sequence[SampleRow]) -> No
     """Delete the samples that were read as these rows."""
     session.each(_DELETE, [(cage, *row[:5]) for row in rows])
     recount(session, "sample", [(cage, row[0], row[1]) for row in rows])
-
-
-def _next_day(session: AbstractSession, cage: str, stream: str, start: int) -> int | None:
-    ((t,),) = session.rows(_NEXT, (cage, stream, start))
-    return None if t is None else t - t % DAY_US
 
 
 def retire_days(

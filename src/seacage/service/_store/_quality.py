@@ -366,12 +366,10 @@ class _Stream:
         last = [sample for _, sample in readable(self.rows(_LAST, t, limit=4 * EVERY))]
         if not last:
             return Memory()
-        seen, reach_s = {key for one in last for key in one.values}, 0.0
-        for group, keys in GROUPS.items():
-            if not seen.isdisjoint(keys):
-                steady = limits.steadiness[group]
-                times = (steady.attenuated_s, steady.flat_fail_s, steady.gap_s)
-                reach_s = max(reach_s, *(one for one in times if isfinite(one)), 0.0)
+        seen = {key for one in last for key in one.values}
+        steady = [limits.steadiness[of] for of, keys in GROUPS.items() if not seen.isdisjoint(keys)]
+        times = (t for one in steady for t in (one.attenuated_s, one.flat_fail_s, one.gap_s))
+        reach_s = max([0.0, *filter(isfinite, times)])
         reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)
         return Memory(at=(min(microseconds(last[-1].t), microseconds(last[0].t) - reach), -2))
 

@@ -132,12 +132,9 @@ def _recognise(record: Sequence[Any], *, old: bool) -> Found | None:
         if row and row[-1] == checksum(table, row[:-1]):
             return table, row
     letters = "".join(_LETTERS[type(one)] for one in record)
-    for types, table in _OLD.items():
-        if old and len(letters) == len(types) - 1 and _fits(letters, types):
+    for types, table in _OLD.items() if old else ():
+        pairs = zip(letters, types, strict=False)
+        if len(letters) == len(types) - 1 and all(a == b or a + b == "ir" for a, b in pairs):
             row = tuple(record[1:] if table == "journal" else record)
             return table, (*row, UNVERIFIED)
     return None
-
-
-def _fits(letters: str, types: str) -> bool:
-    return all(a == b or (a == "i" and b == "r") for a, b in zip(letters, types, strict=False))
