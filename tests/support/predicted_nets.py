@@ -41,13 +41,15 @@ def erring_twin(*, cases: int = 400, seed: int = 0) -> Twin:
     """A twin that has learned how its nets drift."""
     random, twin = np.random.default_rng(seed), stand_in_twin()
     velocity = currents(cases, random)
-    shapes = twin.predict(water(velocity)).node_position
+    answer = twin.predict(water(velocity))
+    shapes = answer.node_position
     known = Discrepancy.fit(
         twin.cage,
         velocity,
         predicted=shapes,
         true=drifting(shapes, random),
         origin=Origin.VIRTUAL_FIELD,
+        level=answer.shape_level,
     )
     return replace(twin, discrepancy=known)
 

@@ -171,10 +171,13 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     yield "shape_level", [answer.shape_level] * len(buoy)
     yield "shape_in_domain", answer.in_domain.tolist()
     yield "shape_interval_reason", [interval_reason(known=answer.shape_level > 1)] * len(buoy)
-    depth = -answer.node_position[:, replayed.cage.bottom_node, 2]
-    yield from _interval_columns("shape_bottom_depth", "m", depth)
-    yield "shape_largest_sigma_m", [None] * len(buoy)
-    yield "volume_fraction", _without_nan(answer.volume_fraction)
+    bottom = replayed.cage.bottom_node
+    depth, half = -answer.node_position[:, bottom, 2], INTERVAL_SD * answer.node_std[:, bottom, 2]
+    ends = np.maximum(depth - half, 0.0), np.maximum(depth + half, 0.0)
+    yield from _interval_columns("shape_bottom_depth", "m", depth, *ends)
+    yield "shape_largest_sigma_m", _without_nan(answer.node_std.max(axis=(1, 2)))
+    for end, values in zip(_ENDS, (answer.volume_fraction, *answer.volume_interval()), strict=True):
+        yield f"volume_fraction{end}", _without_nan(values)
 
 
 def _interval_columns(
@@ -246,8 +249,8 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
     low, low_of_bridle = answer.sensor_low.mean, np.asarray(answer.bridle_low)
     best, best_of_bridle = answer.sensor.mean, answer.bridle_tension.mean
     learned = "inside what was learned; 0 is extrapolating"
-    position, no_sigma = answer.node_position, np.full_like(answer.node_sigma, np.nan)
-    where = "position of the net's nodes, level 1"
+    position, std = answer.node_position, answer.node_std.max(axis=2)
+    where = f"position of the net's nodes, level {answer.shape_level}"
     unknown = "standard deviation; not a number where none is known"
     variables = {
         "valid": _variable("time", answer.valid.astype(np.int8), "1", "input passed its checks"),
@@ -270,7 +273,7 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
         "shackle_level": _variable("shackle", answer.sensor_level[kn], "1", "level"),
         "bridle_level": _variable("bridle", answer.bridle_level, "1", "level"),
         "node_position": _variable("time node axis", position.astype(np.float32), "m", where),
-        "node_sigma": _variable("time node", no_sigma.astype(np.float32), "m", unknown),
+        "node_sigma": _variable("time node", std.astype(np.float32), "m", unknown),
         "volume_fraction": _variable("time", answer.volume_fraction, "1", "of still water"),
     }
     return xarray.Dataset(

@@ -67,12 +67,14 @@ def learned_discrepancy(
         progress=progress,
     )
     velocity = shapes.current_velocity
+    answer = twin.predict(Metocean.without_waves(velocity))
     return Discrepancy.fit(
         twin.cage,
         velocity,
-        predicted=twin.predict(Metocean.without_waves(velocity)).node_position,
+        predicted=answer.node_position,
         true=shapes.node_position,
         origin=Origin.VIRTUAL_FIELD,
+        level=answer.shape_level,
     )
 
 

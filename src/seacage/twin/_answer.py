@@ -49,12 +49,15 @@ class Answer:
     sensor_low
         The simulations alone at the sensor's place, with the emulator's spread [N] or [m].
     node_position, shape_level
-        Of the whole net [m], x east, y north, z up.
+        Best mean of the whole net [m], x east, y north, z up, and its fidelity: 2 where at least
+        two depth sensors correct it, else 1.
     node_sigma
-        Largest standard deviation over the axes of each node [m], the emulator's own: the
-        simulations' discrepancy from the real net is not in it at level 1.
-    volume_fraction
-        Volume over the same model's volume in still water [-].
+        Largest standard deviation over the axes of each node [m], the emulator's own.
+    node_std
+        Standard deviation of the true net about that mean, along the axes [m]; NaN at level 1.
+    volume_fraction, volume_std
+        Volume over the same model's volume in still water [-], and its standard deviation about
+        the true one; NaN at level 1.
     line_names, line_kinds
         All lines of the mooring, the bridles first; none where the twin did not learn loads in
         waves.
@@ -96,8 +99,10 @@ class Answer:
     sensor_level: Int[np.ndarray, " sensor"]
     node_position: Float[np.ndarray, "case node 3"]
     node_sigma: Float[np.ndarray, "case node"]
+    node_std: Float[np.ndarray, "case node 3"]
     shape_level: int
     volume_fraction: Float[np.ndarray, " case"]
+    volume_std: Float[np.ndarray, " case"]
     line_names: tuple[str, ...]
     line_kinds: tuple[str, ...]
     line: Loads | None
@@ -142,6 +147,11 @@ class Answer:
     def bridle_interval(self) -> Interval:
         """Interval of the tensions that holds 95 % [N]; NaN where none is calibrated."""
         return _interval(self.bridle_tension, self.bridle_calibrated)
+
+    def volume_interval(self) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, " case"]]:
+        """Interval of the volume fraction that holds 95 % [-]; NaN at level 1."""
+        half = INTERVAL_SD * self.volume_std
+        return np.maximum(self.volume_fraction - half, 0.0), self.volume_fraction + half
 
     def sensor_interval(self) -> Interval:
         """Interval of the readings that holds 95 % [N] or [m]; NaN at level 1."""

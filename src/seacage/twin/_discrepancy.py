@@ -35,6 +35,7 @@ class Discrepancy:
     # Standard deviation of the nodes about their ring's mean, along the same axes [m]
     rest: Float[np.ndarray, "case ring 3"]
     origin: Origin  # how the true shapes were made
+    level: int = 1  # of the predicted shapes
 
     def __post_init__(self) -> None:
         if not len(self.ring):
@@ -49,8 +50,12 @@ class Discrepancy:
         predicted: Float[np.ndarray, "case node 3"],
         true: Float[np.ndarray, "case node 3"],
         origin: Origin,
+        level: int = 1,
     ) -> Self:
-        """Fit to predicted and true node positions [m] under reported currents [m/s]."""
+        """Fit to predicted and true node positions [m] under reported currents [m/s].
+
+        ``origin``, ``level``: of the true and of the predicted ones.
+        """
         error = true - predicted
         tip = error[:, cage.bottom_node :]
         rings = error[:, : cage.bottom_node].reshape(len(error), cage.rings, cage.spokes, 3)
@@ -61,6 +66,7 @@ class Discrepancy:
             # A ring of one node has no scatter: what is near it stands for it.
             rest=np.concatenate([scatter, scatter[:, -1:]], axis=1),
             origin=origin,
+            level=level,
         )
 
     def at(self, cage: Cage, current_velocity: Float[np.ndarray, " 2"]) -> "ShapeError":

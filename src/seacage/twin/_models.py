@@ -25,6 +25,7 @@ from seacage.twin._correction import Correction, Corrections
 from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
+from seacage.twin._net_correction import LEAST_SENSORS, NetCorrection, volume_std
 from seacage.twin._parted import PartedLines
 
 BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory
@@ -94,6 +95,33 @@ class Models:
         shackles = [(line, self.corrections[column]) for column, line in self._lines.items()]
         return relative_discrepancy(shackles, self.bridles)
 
+    @cached_property
+    def net(self) -> NetCorrection | None:
+        """Level 2 of the net; None where too few depth sensors have a calibrated level 2."""
+        columns = self._net_columns
+        if len(columns) < LEAST_SENSORS:
+            return None
+        still = Metocean.without_waves(np.zeros((1, 2))).features(self.inputs)
+        return NetCorrection(
+            shape=self.shape,
+            inputs=self.inputs,
+            most_speed=self.edge[0],
+            still=self.shape.predict(still).mean[0],
+            nodes=tuple(self.cage.depth_sensors[column].node for column in columns),
+        )
+
+    @property
+    def _net_columns(self) -> list[int]:
+        """Columns of the depth sensors whose level 2 is calibrated."""
+        sensors = range(len(self.cage.depth_sensors))
+        known = self.corrections
+        return [one for one in sensors if one in known and known[one].spread.by != "none"]
+
+    @property
+    def level_1(self) -> Self:
+        """The same without level 2 of any sensor, and so of the net."""
+        return replace(self, upper={})
+
     def lower(self, sensor: str) -> Predicts:
         """Level 1 of one sensor [N] or [m]."""
         for one in self.cage.depth_sensors:
@@ -149,7 +177,7 @@ class Models:
             sensor_names=cage.sensor_names,
             sensor_units=("m",) * (len(sensor_level) - shackles) + ("N",) * shackles,
             sensor_level=sensor_level,
-            shape_level=1,
+            shape_level=2 if self.net else 1,
             **of_rows,
             **self._line_loads(water, valid, of_rows["bridle_tension"]),
         )
@@ -233,6 +261,7 @@ class Models:
             parts = [_widen(one, end, ~inside) for one, end in zip(parts, edge, strict=True)]
         bridle_low, shape, sensor_low, bridle, sensor = parts
         bridle_in_domain, sensor_in_domain = self._own_domains(x, inside)
+        volume = self.cage.volume(shape.mean) / self.still_volume
         return {
             "in_domain": inside,
             "bridle_in_domain": bridle_in_domain,
@@ -244,7 +273,9 @@ class Models:
             "sensor_low": sensor_low,
             "node_position": shape.mean,
             "node_sigma": shape.std.max(axis=2),
-            "volume_fraction": self.cage.volume(shape.mean) / self.still_volume,
+            "node_std": self.net.std(water, shape) if self.net else np.full_like(shape.std, np.nan),
+            "volume_fraction": volume,
+            "volume_std": volume_std(volume) if self.net else np.full_like(volume, np.nan),
         }
 
     def _own_domains(
@@ -259,7 +290,7 @@ class Models:
         return bridle, sensor
 
     def _predict(self, water: Metocean, x: Features) -> list[Prediction]:
-        """Predict bridles, shape and sensors at level 1, bridles and sensors by the best level.
+        """Predict bridles at level 1, the net by its best level, then sensors and bridles likewise.
 
         A reading has the instrument's noise; the tension of a shackle's bridle has none.
         """
@@ -285,6 +316,8 @@ class Models:
             lines, here = list(self._lines.values()), list(self._lines)
             bridle.mean[:, lines] = sensor.mean[:, here]
             bridle.std[:, lines] = sensor.std[:, here]
+            if self.net is not None:
+                shape = self.net.predict(water, sensor.mean[:, self._net_columns])
             sensor.std[:, columns] = np.sqrt(sensor.std[:, columns] ** 2 + self.together.noise)
         return [bridle_low, shape, sensor_low, bridle, sensor]
 

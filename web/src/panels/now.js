@@ -38,7 +38,8 @@ export class Now {
     this.load.say(amount(top?.kn, "kN"), `${half(interval, "kN")} ${unitName("kN")}`, top ? loadWords(top) : "");
     this.load.mark(concernOf(state, "load"));
     const share = state?.valid ? state.volume_fraction : null;
-    this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, "%",
+    const [lower, mean, upper] = ["_lower", "", "_upper"].map((end) => 100 * (state?.[`volume_fraction${end}`] ?? NaN));
+    this.volume.say(known(share) ? String(Math.round(100 * share)) : DASH, `${half({ mean, lower, upper }, "%", 0)} %`,
       known(share) ? text("now.ofStill") : "");
     this.volume.mark(concernOf(state, "volume"));
     this.explain(state);

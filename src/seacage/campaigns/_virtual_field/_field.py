@@ -254,12 +254,9 @@ def _settle(
     error: Float[np.ndarray, "case sensor"],
 ) -> VirtualField:
     """The current as it is, its answers, and what the sensors make of them."""
-    rng, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
+    _, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
-    velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
-    velocity = velocity + _MEAN_SHEAR * shear(
-        hidden.profile, len(seconds), float(seconds[1] - seconds[0]), seed=seed
-    )
+    velocity = settled_current(buoy, seconds, hidden=hidden, seed=seed)
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
     truth = FieldRecord(
         cage=cage.name,
@@ -281,6 +278,16 @@ def _settle(
         record=replace(truth, sensors=seen),
         truth=replace(truth, notes=(*truth.notes, _EXACT)),
     )
+
+
+def settled_current(
+    buoy: Record, seconds: Float[np.ndarray, " t"], *, hidden: TruthParameters, seed: int
+) -> Float[np.ndarray, "t 2"]:
+    """Mean current over the net's depth in a settled field, at even times [m/s]."""
+    (rng,) = np.random.default_rng(seed).spawn(1)
+    velocity = current_at_cage(buoy, seconds, hidden=hidden, rng=rng)
+    step = float(seconds[1] - seconds[0])
+    return velocity + _MEAN_SHEAR * shear(hidden.profile, len(seconds), step, seed=seed)
 
 
 def _exact_sensors(

@@ -60,6 +60,7 @@ def _without_nodes(answer: Answer) -> Answer:
         answer,
         node_position=np.empty((rows, 0, 3)),
         node_sigma=np.empty((rows, 0)),
+        node_std=np.empty((rows, 0, 3)),
         node_motion=None,
     )
 

@@ -48,6 +48,7 @@ def state_of(
 ) -> states.State:
     """Say what a cage does at one time."""
     answer = answered.answer
+    lower, upper = answer.volume_interval()
     return states.State(
         cage=name,
         t=answered.t,
@@ -65,6 +66,8 @@ def state_of(
         shape_level=answer.shape_level,
         shape=_shape_state(answer),
         volume_fraction=_number(answer.volume_fraction[0], 4),
+        volume_fraction_lower=_number(lower[0], 4),
+        volume_fraction_upper=_number(upper[0], 4),
         silent=sorted(memory.silent),
         amended=[
             states.Amended.model_validate(asdict(one) | {"quantity": one.key, "reason": one.remark})
@@ -252,7 +255,7 @@ def shape_of(answered: Answered) -> states.Shape:
         t=answered.t,
         valid=valid,
         node_position_m=answer.node_position[0].round(_DECIMALS).tolist() if valid else [],
-        sigma_m=answer.node_sigma[0].round(_DECIMALS).tolist() if known else None,
+        sigma_m=answer.node_std[0].max(axis=1).round(_DECIMALS).tolist() if known else None,
         **dict(about),
     )
 
@@ -316,6 +319,7 @@ def history_of(
 ) -> History:
     """Say what the twin answers to each reading of a buoy."""
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
+    lower, upper = answer.volume_interval()
     return History(
         t=times,
         valid=answer.valid.tolist(),
@@ -326,6 +330,8 @@ def history_of(
         sensors={one.name: _series(one) for one in sensor_outputs(answer)},
         measured=dict(measured),
         volume_fraction=_column(answer.volume_fraction),
+        volume_fraction_lower=_column(lower),
+        volume_fraction_upper=_column(upper),
         thinned=thinned,
     )
 

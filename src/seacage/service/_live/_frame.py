@@ -49,7 +49,7 @@ def frame_of(
     if state.shape.interval_reason:
         about |= Flags.NO_SPREAD
     elif state.valid:
-        sigma = answer.node_sigma[0]
+        sigma = answer.node_std[0].max(axis=1)
     if state.in_domain:
         about |= Flags.IN_DOMAIN
     moved_by, moved = _in_units(displacement, np.dtype("<i2"))

@@ -48,4 +48,6 @@ class History(AbstractAnswer):
     sensors: dict[str, Series]
     measured: dict[str, Measured]
     volume_fraction: list[float | None]
+    volume_fraction_lower: list[float | None]
+    volume_fraction_upper: list[float | None]
     thinned: bool

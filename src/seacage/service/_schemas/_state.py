@@ -170,6 +170,8 @@ class State(AbstractAnswer):
     shape_level: int
     shape: ShapeState
     volume_fraction: float | None
+    volume_fraction_lower: float | None = None
+    volume_fraction_upper: float | None = None
     silent: list[str]
     amended: list[Amended]
     alarms: list[AlarmBrief] = Field(default=[])

@@ -94,6 +94,8 @@ class PredictedNet:
             )
         velocity = water.current_velocity[0]
         known = twin.discrepancy
+        if known is not None and known.level < answer.shape_level:
+            answer = twin.models.level_1.answer(water, [""])
         return cls(
             cage=twin.cage,
             node_position=answer.node_position[0],

@@ -25,7 +25,8 @@ from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
 
 FORMAT = "seacage twin"
 VERSION = 2
-# With a fault detector of other settings, which version 0.1.0 would ignore: it refuses these
+# With what version 0.1.0 would ignore, a fault detector of other settings or a discrepancy of the
+# net's level 2: it refuses these
 TUNED_VERSION = 3
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
@@ -99,9 +100,10 @@ def to_parts(
     """Return a twin's settings and arrays, from its fields."""
     from pydantic import TypeAdapter
 
+    tuned = others["fault_detector"] != FaultDetectorSettings()
     header = Header(
         format=FORMAT,
-        version=VERSION if others["fault_detector"] == FaultDetectorSettings() else TUNED_VERSION,
+        version=TUNED_VERSION if tuned or (discrepancy and discrepancy.level > 1) else VERSION,
         cage_toml=models.cage.to_toml(),
         domain=_box(models.domain),
         **_of_loads(models.loads),
@@ -141,7 +143,7 @@ def to_parts(
         turns = models.parted.symmetry.to_arrays()
         arrays |= {f"{PARTED}:{key}": values for key, values in turns.items()}
     if discrepancy is not None:
-        settings["discrepancy"] = {"origin": str(discrepancy.origin)}
+        settings["discrepancy"] = {"origin": str(discrepancy.origin), "level": discrepancy.level}
         arrays |= {f"{DISCREPANCY}{key}": getattr(discrepancy, key) for key in _ERRORS}
     return settings, arrays
 
@@ -206,7 +208,11 @@ def _discrepancy(
     for key, shape in zip(_ERRORS, ((cases, 2), by_ring, by_ring), strict=True):
         if own[key].shape != shape:
             raise ModelError(f"its {key} is {own[key].shape}, not {shape}.")
-    return Discrepancy(origin=Origin(settings["origin"]), **own)
+    # Before 0.2.0 nets had level 1 alone.
+    level = settings.get("level", 1)
+    if level not in (1, 2):
+        raise ModelError(f"its discrepancy is of level {level!r}; there are 1 and 2.")
+    return Discrepancy(origin=Origin(settings["origin"]), level=level, **own)
 
 
 def _arrays_of(part: str, arrays: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:

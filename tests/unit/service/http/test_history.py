@@ -189,4 +189,4 @@ def test_a_span_of_a_twin_in_waves_keeps_no_node():
     answer = _without_nodes(wavy_twin().predict(SeaState(current_speed=0.4, current_to=40.0)))
     assert answer.node_motion is None
     assert answer.line is not None
-    assert answer.node_position.size == answer.node_sigma.size == 0
+    assert answer.node_position.size == answer.node_sigma.size == answer.node_std.size == 0

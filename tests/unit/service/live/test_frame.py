@@ -45,25 +45,28 @@ def test_a_frame_holds_the_net_to_half_a_unit(twin, rest, speed):
     assert frame.unit < 1e-3, "finer than a millimetre, while the net moves by metres"
     assert frame.state == state.model_dump(mode="json")
     assert frame.t_ms == NOON.timestamp() * 1e3
-    assert (frame.version, frame.flags) == (2, Flags.VALID | Flags.IN_DOMAIN | Flags.NO_SPREAD)
+    assert (frame.version, frame.flags) == (2, Flags.VALID | Flags.IN_DOMAIN)
 
 
 def test_a_net_that_no_sensor_trained_has_no_spread_in_a_frame(twin, rest):
-    state, message = framed(twin, rest, answered_by(twin, 0.5))
+    alone = replace(twin, models=twin.models.level_1)
+    state, message = framed(alone, rest, answered_by(alone, 0.5))
     frame = decode_frame(message)
     assert frame.flags & Flags.NO_SPREAD
     assert frame.sigma.size == 0
     assert len(frame.displacement) == len(rest)
     assert "No sensor has trained level 2" in state.shape.interval_reason
+    assert (state.volume_fraction_lower, state.volume_fraction_upper) == (None, None)
 
 
 def test_a_spread_that_is_known_is_in_the_frame(twin, rest):
     answered = answered_by(twin, 0.5)
-    answered = replace(answered, answer=replace(answered.answer, shape_level=2))
-    frame = decode_frame(framed(twin, rest, answered)[1])
+    state, message = framed(twin, rest, answered)
+    frame = decode_frame(message)
     assert not frame.flags & Flags.NO_SPREAD
     near = {"rtol": 1e-6, "atol": 0.501 * frame.sigma_unit}
-    np.testing.assert_allclose(frame.sigma, answered.answer.node_sigma[0], **near)
+    np.testing.assert_allclose(frame.sigma, answered.answer.node_std[0].max(axis=1), **near)
+    assert state.volume_fraction_lower < state.volume_fraction < state.volume_fraction_upper
 
 
 @pytest.mark.parametrize("metres", [40.0, 1e4, 0.0])

@@ -1,0 +1,129 @@
+"""How far a twin's whole net is off, and how well its intervals hold, on cages of the family.
+
+    python tools/score_net.py CAMPAIGN OUT --truths 1-26 [--workers 2]
+
+CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
+virtual field of 50 days, odd numbers in tame and even ones in coastal water; the twin trains with
+the cage's own sensors, and its net is scored at 100 times of the last 25 days against the true one,
+node by node along x, y and z, beside level 1. Fields are kept in OUT. Virtual field.
+"""
+
+import argparse
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from _family_fields import field_of, options_for, scored_times, share_by_third
+
+from seacage.cage import Cage
+from seacage.campaigns import TruthParameters
+from seacage.campaigns._virtual_field._field import settled_current
+from seacage.campaigns._virtual_field._responses import (
+    _DIRECTIONS,
+    _GROWTHS,
+    _HELD_OUT_GROWTH,
+    _SPEEDS,
+    Responses,
+    _on_grid,
+)
+from seacage.campaigns._virtual_field._timetable import reading_times
+from seacage.records import Record, read_campaign
+from seacage.twin import Metocean, Training, Twin, train
+
+EVERY = 12  # half hours of those scored
+ABOVE = 1000.0  # m, added to all coordinates, which the responses hold above zero
+DAY = 86400.0
+BASE: list[Twin] = []  # of a process: the twin that has learned the low fidelity
+
+
+def main() -> None:
+    """Train and score, truth by truth, and sum up."""
+    given = options_for(__doc__, truths="1-26").parse_args()
+    campaign = read_campaign(given.campaign)
+    cage = Cage.from_toml(campaign.cage_toml)
+    base = train(cage, campaign, training=Training(restarts=0))
+    # Twins are inherited, not pickled: their kernels hold functions.
+    with ProcessPoolExecutor(given.workers, initializer=BASE.append, initargs=(base,)) as pool:
+        found = list(pool.map(partial(_score, given), given.truths))
+    for name in ("node", "along x and y", "along z", "volume"):
+        each = np.array([one[name] for one in found])
+        print(
+            f"{len(each)} truths, {name}: level 2 over level 1 {_geometric(each[:, 0]):.2f} (at "
+            f"most {each[:, 0].max():.2f}), root mean square {each[:, 1].mean():.3g}; 95 % "
+            f"interval holds {each[:, 2].mean():.3f}, on a cage at least {each[:, 2].min():.2f}, "
+            f"below 0.85 on {np.sum(each[:, 2] < 0.85)}; by third of the size "
+            f"{each[:, 4:].mean(axis=0).round(3)}; half width {each[:, 3].mean():.3g}"
+        )
+
+
+def _score(given: argparse.Namespace, number: int) -> Mapping[str, np.ndarray]:
+    """Ratio to level 1, error, share held and half width, then the share by third."""
+    base, water = BASE[0], "tame" if number % 2 else "coastal"
+    field = field_of(base.cage, number, water, given, name=f"{water}-{number}")
+    twin = train(base.cage, None, field.record, base=base, training=Training(restarts=1))
+    buoy = field.truth.buoy
+    time = scored_times(buoy)[::EVERY]
+    hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
+    true = _true_nets(base.cage, hidden, buoy, number, time, given.out / f"{water}-{number}")
+    seen = Metocean.of_record(buoy).rows(np.searchsorted(buoy.time, time))
+    low, best = base.predict(seen), twin.predict(seen)
+    volume = base.cage.volume(true) / twin.models.still_volume
+    error, of_low = true - best.node_position, true - low.node_position
+    size = np.linalg.norm(best.node_position - twin.models.net.still, axis=2)[..., None]
+    sizes = np.broadcast_to(size, error.shape)
+    found = {
+        "node": _summary(error, of_low, best.node_std, sizes),
+        "along x and y": _summary(*(one[..., :2] for one in (error, of_low, best.node_std, sizes))),
+        "along z": _summary(*(one[..., 2] for one in (error, of_low, best.node_std, sizes))),
+        "volume": _summary(
+            volume - best.volume_fraction,
+            volume - low.volume_fraction,
+            best.volume_std,
+            1.0 - best.volume_fraction,
+        ),
+    }
+    words = ", ".join(f"{name} {one[2]:.2f} ({one[0]:.2f})" for name, one in found.items())
+    print(f"truth {number}, {water}: holds {words} of level 1's error (virtual field)", flush=True)
+    return found
+
+
+def _summary(
+    error: np.ndarray, of_low: np.ndarray, std: np.ndarray, size: np.ndarray
+) -> np.ndarray:
+    off, half = float(np.sqrt(np.mean(error**2))), 1.96 * std
+    held = np.abs(error) <= half
+    ratio = off / float(np.sqrt(np.mean(of_low**2)))
+    return np.array([ratio, off, held.mean(), half.mean(), *share_by_third(held, size)])
+
+
+def _true_nets(
+    cage: Cage, hidden: TruthParameters, buoy: Record, seed: int, time: np.ndarray, kept: Path
+) -> np.ndarray:
+    """Positions of the true net's nodes at some times [m], from the equilibria of its field."""
+    campaigns = {one.cage_toml: one for one in map(read_campaign, kept.iterdir())}
+    still, *moving = (
+        ABOVE + campaigns[hidden.true_cage(cage, growth).to_toml()].node_position
+        for growth in (_HELD_OUT_GROWTH, *_GROWTHS)
+    )
+    answers = Responses(
+        sensor_names=tuple(f"coordinate {k}" for k in range(3 * cage.node_count)),
+        speed=np.array([0.0, *_SPEEDS]),
+        direction=np.deg2rad(_DIRECTIONS),
+        growth=np.array(_GROWTHS),
+        value=np.stack([_on_grid(still[0].ravel(), one.reshape(len(one), -1)) for one in moving]),
+    )
+    seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
+    rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))
+    velocity = settled_current(buoy, seconds, hidden=hidden, seed=seed)[rows]
+    flat = answers.at(velocity, hidden.fouling.grown(seconds[rows] / DAY))
+    return flat.reshape(len(rows), -1, 3) - ABOVE
+
+
+def _geometric(ratio: np.ndarray) -> float:
+    return float(np.exp(np.mean(np.log(ratio))))
+
+
+if __name__ == "__main__":
+    main()
