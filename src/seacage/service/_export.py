@@ -172,9 +172,12 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     yield "shape_in_domain", answer.in_domain.tolist()
     yield "shape_interval_reason", [interval_reason(known=answer.shape_level > 1)] * len(buoy)
     bottom = replayed.cage.bottom_node
-    depth, half = -answer.node_position[:, bottom, 2], INTERVAL_SD * answer.node_std[:, bottom, 2]
-    ends = np.maximum(depth - half, 0.0), np.maximum(depth + half, 0.0)
-    yield from _interval_columns("shape_bottom_depth", "m", depth, *ends)
+    # The higher end is the less deep; no net hangs above the surface.
+    lower, mean, upper = (
+        np.maximum(-one[:, bottom, 2], 0.0)
+        for one in (answer.node_interval()[1], answer.node_position, answer.node_interval()[0])
+    )
+    yield from _interval_columns("shape_bottom_depth", "m", mean, lower, upper)
     yield "shape_largest_sigma_m", _without_nan(answer.node_std.max(axis=(1, 2)))
     for end, values in zip(_ENDS, (answer.volume_fraction, *answer.volume_interval()), strict=True):
         yield f"volume_fraction{end}", _without_nan(values)

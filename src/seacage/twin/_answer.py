@@ -9,6 +9,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.surrogates import Loads, Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
+PerNode = Float[np.ndarray, "case node 3"]
 INTERVAL_SD = 1.96  # half the width of an interval, in standard deviations; it holds 95 %
 
 # Why an answer of level 1 has no interval
@@ -147,6 +148,11 @@ class Answer:
     def bridle_interval(self) -> Interval:
         """Interval of the tensions that holds 95 % [N]; NaN where none is calibrated."""
         return _interval(self.bridle_tension, self.bridle_calibrated)
+
+    def node_interval(self) -> tuple[PerNode, PerNode]:
+        """Interval of each node's x, y and z that holds 95 % [m]; NaN at level 1."""
+        half = INTERVAL_SD * self.node_std
+        return self.node_position - half, self.node_position + half
 
     def volume_interval(self) -> tuple[Float[np.ndarray, " case"], Float[np.ndarray, " case"]]:
         """Interval of the volume fraction that holds 95 % [-]; NaN at level 1."""

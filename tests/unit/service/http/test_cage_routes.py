@@ -111,8 +111,8 @@ def test_a_buoy_reading_becomes_loads_with_levels_and_intervals_where_they_are_h
     assert (sensor["name"], sensor["unit"], sensor["measured"]) == ("depth-2", "m", 14.0)
     assert sensor["measured_age_s"] == 60.0
     assert (sensor["level"], sensor["in_domain"], sensor["interval_reason"]) == (2, True, None)
-    assert "No sensor has trained level 2" in state["shape"]["interval_reason"]
-    assert (state["shape"]["level"], state["shape"]["in_domain"]) == (1, True)
+    assert state["shape"]["interval_reason"] is None
+    assert (state["shape"]["level"], state["shape"]["in_domain"]) == (2, True)
 
 
 def test_the_history_has_intervals_only_where_a_sensor_trained_them(live: Running):
@@ -336,7 +336,7 @@ def test_the_pages_message_can_be_requested_now_and_in_the_past(live: Running):
     live.post(buoy(-120, speed=0.2), buoy(0, speed=0.6))
     ask = lambda **at: frame_of(live.reader.get("/api/v1/cages/ace/frame", params=at))  # noqa: E731
     now = eventually(ask, lambda frame: frame.state["valid"])
-    assert now.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.NO_SPREAD
+    assert now.flags == Flags.VALID | Flags.IN_DOMAIN
     past = ask(at=at(-60))
     assert past.flags == now.flags | Flags.PAST
     assert past.state["water"]["current_speed_m_s"] == pytest.approx(0.2)
@@ -346,7 +346,7 @@ def test_the_pages_message_can_be_requested_now_and_in_the_past(live: Running):
 def test_water_that_is_only_imagined_is_answered_and_leaves_no_trace(live: Running):
     body = {"current_speed_m_s": 0.5, "current_to_deg": 90.0}
     frame = frame_of(live.reader.post("/api/v1/cages/ace/whatif", json=body))
-    assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF | Flags.NO_SPREAD
+    assert frame.flags == Flags.VALID | Flags.IN_DOMAIN | Flags.WHAT_IF
     expected = live.cage.twin.predict(SeaState(current_speed=0.5, current_to=90.0))
     assert frame.state["bridles"][0]["tension_kn"]["mean"] == pytest.approx(
         expected.bridle_tension.mean[0, 0] / 1e3, abs=5e-4

@@ -87,7 +87,7 @@ def test_without_valid_input_a_frame_holds_no_net(twin, rest):
 
 def test_a_frame_says_that_it_is_of_the_past_or_of_what_would_be(twin, rest):
     _, message = framed(twin, rest, answered_by(twin, 0.5), about=Flags.PAST | Flags.WHAT_IF)
-    about = Flags.PAST | Flags.WHAT_IF | Flags.NO_SPREAD
+    about = Flags.PAST | Flags.WHAT_IF
     assert decode_frame(message).flags == Flags.VALID | Flags.IN_DOMAIN | about
 
 
