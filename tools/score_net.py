@@ -19,7 +19,7 @@ from _family_fields import field_of, options_for, scored_times, share_by_third
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters
-from seacage.campaigns._virtual_field._field import settled_current
+from seacage.campaigns._virtual_field._field import current_over_net
 from seacage.campaigns._virtual_field._responses import (
     _DIRECTIONS,
     _GROWTHS,
@@ -71,6 +71,7 @@ def _score(given: argparse.Namespace, number: int) -> Mapping[str, np.ndarray]:
     low, best = base.predict(seen), twin.predict(seen)
     volume = base.cage.volume(true) / twin.models.still_volume
     error, of_low = true - best.node_position, true - low.node_position
+    assert twin.models.net is not None  # three depth sensors trained for 25 days
     size = np.linalg.norm(best.node_position - twin.models.net.still, axis=2)[..., None]
     sizes = np.broadcast_to(size, error.shape)
     found = {
@@ -116,7 +117,7 @@ def _true_nets(
     )
     seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
     rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))
-    velocity = settled_current(buoy, seconds, hidden=hidden, seed=seed)[rows]
+    velocity = current_over_net(buoy, seconds, hidden=hidden, seed=seed)[rows]
     flat = answers.at(velocity, hidden.fouling.grown(seconds[rows] / DAY))
     return flat.reshape(len(rows), -1, 3) - ABOVE
 

@@ -20,12 +20,18 @@ from seacage.surrogates import (
     Predicts,
 )
 from seacage.twin._answer import Answer
-from seacage.twin._bridle_discrepancy import discrepancy_std, relative_discrepancy
-from seacage.twin._correction import Correction, Corrections
+from seacage.twin._correction import (
+    LEAST_SENSORS,
+    Correction,
+    Corrections,
+    NetCorrection,
+    discrepancy_std,
+    relative_discrepancy,
+    volume_std,
+)
 from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
-from seacage.twin._net_correction import LEAST_SENSORS, NetCorrection, volume_std
 from seacage.twin._parted import PartedLines
 
 BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory

@@ -8,7 +8,7 @@ import pytest
 from seacage.surrogates import Prediction
 from seacage.testing import stand_in_campaign, stand_in_seas, stand_in_twin
 from seacage.twin import Metocean, Twin, interval_reason
-from seacage.twin._bridle_discrepancy import SHARED, discrepancy_std, relative_discrepancy
+from seacage.twin._correction._bridles import SHARED, discrepancy_std, relative_discrepancy
 
 SEAS = stand_in_seas(40, seed=5, current_speed=0.5)
 

@@ -4,7 +4,7 @@ import pytest
 from seacage.surrogates import GaussianProcess, Prediction
 from seacage.testing import stand_in_twin
 from seacage.twin import Metocean, Pairs
-from seacage.twin._correction import Correction, FixedPrediction, fit_gain
+from seacage.twin._correction._sensor import Correction, FixedPrediction, fit_gain
 
 START = np.datetime64("2020-01-18T00:00", "us")
 

@@ -9,7 +9,7 @@ from predicted_nets import NOW, erring_twin
 from seacage.testing import stand_in_seas, stand_in_twin
 from seacage.testing._stand_ins import _position
 from seacage.twin import Metocean, PredictedNet, Twin
-from seacage.twin._net_correction import volume_std
+from seacage.twin._correction import volume_std
 
 FELT = 1.15
 SEAS = stand_in_seas(40, seed=5, current_speed=0.8)
@@ -43,6 +43,7 @@ def test_depths_bring_the_whole_net_nearer_to_the_truth(true):
 
 def test_the_current_that_the_depths_agree_with_is_found():
     net = stand_in_twin().models.net
+    assert net is not None
     fast = WATER.rows(np.linalg.norm(WATER.current_velocity, axis=1) > 0.4)
     depth = -_position(stand_in_twin().cage, FELT * fast.current_velocity)[:, list(net.nodes), 2]
     found = net.relative_current(fast, depth)
@@ -102,6 +103,7 @@ def test_a_volume_is_the_less_sure_the_more_of_it_is_lost():
 
 def test_an_error_that_was_learned_of_level_1_is_added_to_level_1():
     twin = erring_twin()
+    assert twin.discrepancy is not None
     old = replace(twin, discrepancy=replace(twin.discrepancy, level=1))
     water = Metocean.without_waves(np.array([[0.6, 0.1]]))
     nets = [PredictedNet.under(one, water, t=NOW) for one in (twin, old)]
@@ -112,6 +114,9 @@ def test_an_error_that_was_learned_of_level_1_is_added_to_level_1():
 
 def test_the_level_of_an_error_is_saved_with_it(tmp_path):
     twin = erring_twin()
+    assert twin.discrepancy is not None
     assert twin.discrepancy.level == 2
     twin.write(tmp_path / "twin")
-    assert Twin.read(tmp_path / "twin").discrepancy.level == 2
+    read = Twin.read(tmp_path / "twin").discrepancy
+    assert read is not None
+    assert read.level == 2

@@ -256,7 +256,7 @@ def _settle(
     """The current as it is, its answers, and what the sensors make of them."""
     _, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
-    velocity = settled_current(buoy, seconds, hidden=hidden, seed=seed)
+    velocity = current_over_net(buoy, seconds, hidden=hidden, seed=seed)
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
     truth = FieldRecord(
         cage=cage.name,
@@ -280,7 +280,7 @@ def _settle(
     )
 
 
-def settled_current(
+def current_over_net(
     buoy: Record, seconds: Float[np.ndarray, " t"], *, hidden: TruthParameters, seed: int
 ) -> Float[np.ndarray, "t 2"]:
     """Mean current over the net's depth in a settled field, at even times [m/s]."""

@@ -222,7 +222,7 @@ def _panels(structure: Structure, index: int) -> Panels:
     """
     net, position = structure.net[index], structure.design_position
     twine, corners = structure.twine_of(net), structure.net_panels(index)
-    area = _knitted_area(structure, index)
+    area = _area_of_netting(structure, index)
     folds = np.maximum(area / panel_area(position, corners), 1.0)
     cover = twine.diameter / twine.half_mesh
     solidity = np.minimum(1.0 - (1.0 - cover) * (1.0 - cover * folds), MOST_SOLIDITY)
@@ -245,7 +245,7 @@ def _panels(structure: Structure, index: int) -> Panels:
     )
 
 
-def _knitted_area(structure: Structure, index: int) -> Float[np.ndarray, " panel"]:
+def _area_of_netting(structure: Structure, index: int) -> Float[np.ndarray, " panel"]:
     """Area of a net's panels as they were knitted, folds included [m2]."""
     row, chord = structure.design_net(index)
     return np.repeat((chord[:-1] + chord[1:]) / 2.0 * row, structure.spokes)
@@ -325,7 +325,7 @@ def _put_net(structure: Structure, index: int, lumps: _Lumps) -> None:
     """A net weighs what was knitted, in folds or not."""
     net, corners = structure.net[index], structure.net_panels(index)
     twine = structure.twine_of(net)
-    volume = (twine.volume * _knitted_area(structure, index))[:, None]
+    volume = (twine.volume * _area_of_netting(structure, index))[:, None]
     share = corner_shares(corners)
     lumps.put(
         corners.ravel(),

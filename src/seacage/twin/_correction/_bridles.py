@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.surrogates import Prediction, Predicts
-from seacage.twin._correction import Correction
+from seacage.twin._correction._sensor import Correction
 
 PerLine = Float[np.ndarray, "case line"]
 

@@ -1,0 +1,26 @@
+"""Level 2: sensors corrected by their readings, and what these tell of bridles and net."""
+
+from seacage.twin._correction._bridles import discrepancy_std, relative_discrepancy
+from seacage.twin._correction._net import LEAST_SENSORS, NetCorrection, volume_std
+from seacage.twin._correction._sensor import (
+    DAY,
+    LEAST_SHARE,
+    Correction,
+    Corrections,
+    FixedPrediction,
+    Spread,
+)
+
+__all__ = [
+    "DAY",
+    "LEAST_SENSORS",
+    "LEAST_SHARE",
+    "Correction",
+    "Corrections",
+    "FixedPrediction",
+    "NetCorrection",
+    "Spread",
+    "discrepancy_std",
+    "relative_discrepancy",
+    "volume_std",
+]
