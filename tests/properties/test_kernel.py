@@ -5,9 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiled import still_force
+from newton import nearer
 from seacage.cage import Cage
 from seacage.dynamics import LAWS
-from seacage.dynamics._equilibrium._newton import nearer
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._moored._mooring import anchor_assembly

@@ -10,7 +10,10 @@ from seacage.conventions import Rows
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Balance:
-    """Settings of Newton's method for equilibria; ``nearer`` defines the iteration."""
+    """Settings of Newton's method for equilibria.
+
+    ``nearer`` in ``tests/support/newton.py`` defines the iteration, and ``_newton.c`` does it.
+    """
 
     free: Bool[np.ndarray, " node"]  # nodes that may move
     tolerance: float  # largest force left on a node of a case that is done [N]

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from newton import dense, hooke, nearer, tangent
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, rest_shape
-from seacage.dynamics._equilibrium._newton import dense, hooke, nearer, tangent
 from seacage.dynamics._kernel._balance import Balance, Balancing
 from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._moored._mooring import anchor_assembly

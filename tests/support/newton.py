@@ -1,4 +1,4 @@
-"""Newton's method for equilibria: the readable definition, one case at a time."""
+"""Newton's method for equilibria, in NumPy, one case at a time: what the kernel is held against."""
 
 from dataclasses import dataclass, replace
 
