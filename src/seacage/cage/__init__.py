@@ -1,6 +1,7 @@
 """The cage: collar, netting, sinker tube, bridles and their node graph; and any structure."""
 
 from seacage.cage._cage import Cage, DepthSensor, Shackle
+from seacage.cage._check import Remark, cage_errors, cage_numbers, cage_remarks
 from seacage.cage._mooring_lines import MooringLines, mooring_lines
 from seacage.cage._nearest import Nearest
 from seacage.cage._parts import (
@@ -34,6 +35,7 @@ __all__ = [
     "Net",
     "Netting",
     "Point",
+    "Remark",
     "Ring",
     "Ropes",
     "Section",
@@ -45,6 +47,9 @@ __all__ = [
     "Tie",
     "Tip",
     "Twine",
+    "cage_errors",
+    "cage_numbers",
     "cage_or_structure",
+    "cage_remarks",
     "mooring_lines",
 ]

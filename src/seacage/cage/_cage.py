@@ -58,8 +58,8 @@ class Cage(TomlFile):
     frame: _parts.Frame
     anchor_lines: _parts.AnchorLines
     bridles: _parts.Bridles
-    shackle: tuple[_parts.ShackleEntry, ...]
-    depth_sensor: tuple[_parts.DepthSensorEntry, ...]
+    shackle: tuple[_parts.ShackleEntry, ...] = ()
+    depth_sensor: tuple[_parts.DepthSensorEntry, ...] = ()
 
     def __post_init__(self) -> None:
         _parts.check_bounds(self, f"Cage {self.name}")

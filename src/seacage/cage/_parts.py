@@ -32,20 +32,21 @@ def key_of(parameter: Field[Any]) -> str:
 def check_bounds(part: Any, where: str) -> None:
     """Refuse a part with a number outside the bounds that it declares."""
     for parameter in fields(part):
-        value = getattr(part, parameter.name)
-        for number in value if isinstance(value, tuple) else (value,):
-            if isinstance(number, int | float):
-                _check_bound(parameter, float(number), where)
+        check_bound(parameter, getattr(part, parameter.name), where)
 
 
-def _check_bound(parameter: Field[Any], number: float, where: str) -> None:
-    low, above = parameter.metadata["low"], parameter.metadata["above"]
-    if not math.isfinite(number) or number < low or (above and number == low):
-        bound = f"above {low:g}" if above else f"at least {low:g}"
-        raise InputError(
-            f"{where}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
-            f"It is: {parameter.metadata['meaning']}."
-        )
+def check_bound(parameter: Field[Any], value: Any, where: str) -> None:
+    """Refuse a parameter's value, or one of its values, outside the bounds declared for it."""
+    for number in value if isinstance(value, tuple) else (value,):
+        if not isinstance(number, int | float):
+            continue
+        low, above = parameter.metadata["low"], parameter.metadata["above"]
+        if not math.isfinite(number) or number < low or (above and number == low):
+            bound = f"above {low:g}" if above else f"at least {low:g}"
+            raise InputError(
+                f"{where}: {key_of(parameter)} = {number:g} must be a finite number {bound}. "
+                f"It is: {parameter.metadata['meaning']}."
+            )
 
 
 def _intercept() -> Any:
@@ -193,7 +194,7 @@ class Netting(_Part):
 
     def _check(self) -> None:
         for added in (self.fouling_shallow, self.fouling_deep):
-            if not 0.0 < self.solidity + added < 0.9:
+            if not 0.0 < self.solidity + added < 0.9 or self.twine_diameter > self.half_mesh:
                 raise InputError(
                     f"Cage, Netting: the solidity is {self.solidity + added:.3g} "
                     f"({self.solidity:.3g} of twine and {added:.3g} of growth), outside (0, 0.9). "

@@ -2,15 +2,20 @@
 
 import difflib
 import json
-from collections.abc import Iterable, Mapping
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, fields, is_dataclass, replace
 from numbers import Integral, Real
 from pathlib import Path
 from types import UnionType
 from typing import Any, Self, get_args, get_origin
 
-from seacage.cage._parts import key_of
+from seacage.cage._parts import check_bound, key_of
 from seacage.conventions import InputError, NonsenseError, parse_toml, read_text
+
+Place = tuple[str | int, ...]
+"""Where a key stands: its section, in an array of tables its number from 0, and its name."""
 
 
 class TomlFile:
@@ -51,11 +56,17 @@ class TomlFile:
 
 def _build(kind: type, table: dict[str, Any], where: str) -> Any:
     known = _parameters(kind, table, where)
-    missing = [key for key in known if key not in table and known[key].default is MISSING]
-    if missing:
-        meaning = known[missing[0]].metadata.get("meaning", "a section of its own")
-        raise InputError(f"{where}: the key {missing[0]!r} is missing ({meaning}). Add it.")
+    for sentence in _missing(known, table):
+        raise InputError(f"{where}: {sentence}")
     return kind(**_values(known, table, where))
+
+
+def _missing(known: Mapping[str, Field[Any]], table: Mapping[str, Any]) -> Iterator[str]:
+    """A sentence for each key that a table needs and has not."""
+    for key, parameter in known.items():
+        if key not in table and parameter.default is MISSING:
+            meaning = parameter.metadata.get("meaning", "a section of its own")
+            yield f"the key {key!r} is missing ({meaning}). Add it."
 
 
 def alter(part: Any, changes: Mapping[str, Any], where: str) -> Any:
@@ -110,6 +121,67 @@ def _check_type(kind: type, value: Any, where: str) -> Any:
     if not isinstance(value, accepted) or isinstance(value, bool):
         raise InputError(f"{where}: must be {meant}, not {value!r}.")
     return value
+
+
+def find_errors(
+    kind: type, table: Mapping[str, Any], place: Place = ()
+) -> Iterator[tuple[Place, str]]:
+    """Whatever is wrong with a table, each sentence with its place.
+
+    What several keys say together is looked at where each of them by itself is right.
+    """
+    where = ".".join(str(one + 1) if isinstance(one, int) else one for one in place)
+    known = {key_of(parameter): parameter for parameter in fields(kind)}
+    wrong = [(place, f"{where}: {one}") for one in _missing(known, table)]
+    for key, value in table.items():
+        at = (*place, key)
+        if key in known and (several := _tables(known[key].type, value)):
+            for number, (part, inner) in enumerate(several):
+                own = (*at, number) if isinstance(value, list) else at
+                wrong += find_errors(part, inner, own)
+        elif sentence := _refusal(lambda: _try_key(kind, key, value, where)):  # noqa: B023
+            wrong.append((at, sentence))
+    if not wrong and (sentence := _refusal(lambda: _build(kind, dict(table), where))):
+        wrong.append((place, sentence))
+    yield from ((at, sentence.lstrip(":, ")) for at, sentence in wrong)
+
+
+def _tables(kind: Any, value: Any) -> list[tuple[Any, Any]]:
+    """The tables of a section, or of an array of them, with what each is to become."""
+    several = value if isinstance(value, list) else [value]
+    part = get_args(kind)[0] if get_origin(kind) is tuple and isinstance(value, list) else kind
+    whole = is_dataclass(part) and all(isinstance(one, Mapping) for one in several)
+    return [(part, one) for one in several] if whole else []
+
+
+def _try_key(kind: type, key: str, value: Any, where: str) -> None:
+    """Refuse a key that is unknown, or whose value is of the wrong type or out of bounds."""
+    parameter = _parameters(kind, [key], where)[key]
+    check_bound(parameter, _value(parameter.type, value, f"{where}, {key}"), where)
+
+
+def _refusal(attempt: Callable[[], object]) -> str:
+    """The sentence by which an attempt is refused; empty where it is not."""
+    try:
+        attempt()
+    except InputError as error:
+        return str(error)
+    return ""
+
+
+def lines_of(text: str) -> dict[Place, int]:
+    """The line of each section and key of TOML text, from 1; that of the whole is the first."""
+    lines, here, seen = dict[Place, int]({(): 1}), Place(), Counter[str]()
+    for number, line in enumerate(text.splitlines(), start=1):
+        if section := re.match(r"\s*(\[\[?)\s*([\w-]+)\s*\]", line):
+            name = section[2]
+            here = (name, seen[name]) if section[1] == "[[" else (name,)
+            seen[name] += 1
+            lines.setdefault((name,), number)
+            lines.setdefault(here, number)
+        elif key := re.match(r"\s*([\w-]+)\s*=", line):
+            lines.setdefault((*here, key[1]), number)
+    return lines
 
 
 def _parts(value: Any) -> tuple[Any, ...]:

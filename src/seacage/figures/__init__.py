@@ -3,6 +3,7 @@
 from seacage.figures._animation import Motion, write_animation
 from seacage.figures._benchmark import Contest, cost_figure, coverage_figure, error_figure
 from seacage.figures._comparison import Comparison, density_figure, rows_figure, series_figure
+from seacage.figures._drawing import cage_drawing_figure
 from seacage.figures._fidelity import Panel, fouling_figure, gain_figure, left_figure, sector_figure
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
@@ -24,6 +25,7 @@ __all__ = [
     "ShapeView",
     "TrainingScores",
     "VolumeMark",
+    "cage_drawing_figure",
     "cost_figure",
     "coverage_figure",
     "density_figure",

@@ -61,8 +61,8 @@ def net_figure(
             draw_ghost(axes, cage, rest, view)
             colours = draw_net(axes, cage, node_position, moved, view=view, toward=toward)
             draw_bridles(axes, cage, node_position, view)
-            _draw_frame(axes, cage, view)
-            _draw_sensors(axes, cage, node_position, view)
+            draw_frame(axes, cage, view)
+            draw_sensors(axes, cage, node_position, view)
             axes.set_aspect("equal")
             axes.grid(visible=False)
         _finish_side(left, sea)
@@ -125,14 +125,14 @@ def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     axes.add_collection(LineCollection(list(ends @ view.T), colors=LOW, linewidths=0.9, zorder=3))
 
 
-def _draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
+def draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
     corner = cage.corner_position @ view.T
     frame = np.vstack([corner, corner[:1]])
     axes.plot(frame[:, 0], frame[:, 1], color=MUTED, lw=0.9, ls=(0, (4, 2)), zorder=1)
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4, zorder=4)
 
 
-def _draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
+def draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
     depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T
     shackle = position[cage.bridle_nodes[[entry.bridle for entry in cage.shackles]]] @ view.T

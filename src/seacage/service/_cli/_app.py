@@ -21,6 +21,7 @@ from seacage.service._cli import (
     _token,
     _train,
 )
+from seacage.service._cli._cage import _check, _draw, _new
 from seacage.service._cli._console import EXIT_CODES
 from seacage.service._cli._rov import _clearance, _inspect
 
@@ -59,6 +60,12 @@ def _options(
     del version
 
 
+_cage = typer.Typer(help="A cage's file: write one, check it, draw it.")
+_cage.command()(_new.new)
+_cage.command()(_check.check)
+_cage.command()(_draw.draw)
+
+app.add_typer(_cage, name="cage")
 app.command()(_settle.settle)
 app.command()(_simulate.simulate)
 app.add_typer(_campaign.group, name="campaign")

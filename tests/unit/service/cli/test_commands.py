@@ -24,6 +24,9 @@ from stores import put, sample, schema
 
 FROZEN = Path(__file__).parents[3] / "frozen" / "0.1.0"
 COMMANDS = [
+    "cage new",
+    "cage check",
+    "cage draw",
     "settle",
     "simulate",
     "campaign run",
