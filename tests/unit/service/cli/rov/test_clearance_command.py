@@ -48,10 +48,11 @@ def test_a_folder_is_queried_about_points_in_a_current(twin):
 
 
 def test_a_path_that_is_too_likely_to_be_too_near_ends_with_four(twin, way):
-    answer = answer_of("clearance", way, "--path", "--most", "1", *twin)
+    near = ["--path", "--below", "3"]
+    answer = answer_of("clearance", way, *near, "--most", "1", *twin)
     p = answer["path"]["p_below"]
     assert 0.0 < p < 1.0
-    result = run("clearance", way, "--path", "--most", p / 2.0, *twin, code=4)
+    result = run("clearance", way, *near, "--most", p / 2.0, *twin, code=4)
     assert "with probability" in result.stderr
     assert "after" in result.stdout
 
