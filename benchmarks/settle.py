@@ -3,12 +3,12 @@
 import time
 
 import numpy as np
+from _newton import nearer
 from _timing import ONCE, print_times, seconds
 
 from seacage.cage import Cage
 from seacage.conventions import has_answer
 from seacage.dynamics import rest_shape, settle
-from seacage.dynamics._equilibrium._newton import nearer
 from seacage.dynamics._equilibrium._search import _balance, _first_shapes, _start
 from seacage.dynamics._kernel._library import kernel
 from seacage.dynamics._moored._pretension import assemble

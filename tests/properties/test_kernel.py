@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks._newton import nearer
 from compiled import still_force
-from newton import nearer
 from seacage.cage import Cage
 from seacage.dynamics import LAWS
 from seacage.dynamics._kernel._balance import Balance, Balancing

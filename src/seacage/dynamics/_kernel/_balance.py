@@ -12,7 +12,7 @@ from seacage.conventions import Rows
 class Balance:
     """Settings of Newton's method for equilibria.
 
-    ``nearer`` in ``tests/support/newton.py`` defines the iteration, and ``_newton.c`` does it.
+    ``nearer`` in ``benchmarks/_newton.py`` defines the iteration, and ``_newton.c`` does it.
     """
 
     free: Bool[np.ndarray, " node"]  # nodes that may move

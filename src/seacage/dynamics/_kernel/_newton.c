@@ -1,6 +1,6 @@
 /* Newton's method for equilibria, LANES cases side by side.
  *
- * The definition is `nearer` in _equilibrium/_newton.py; this file computes the same, fast. The
+ * The definition is `nearer` in benchmarks/_newton.py; this file computes the same, fast. The
  * tangent is kept as 3 × 3 blocks in the rows of its own LU factors, at places that _sparsity.py
  * has worked out. As each case has a lane of its own there is no choice of pivots: a shift on the
  * diagonal keeps the elimination sound, and what it loses in accuracy the next iteration mends.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from newton import dense, hooke, nearer, tangent
+from benchmarks._newton import dense, hooke, nearer, tangent
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, rest_shape
 from seacage.dynamics._kernel._balance import Balance, Balancing

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigvalsh
 
-from newton import _bends, dense
+from benchmarks._newton import _bends, dense
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.dynamics._moored._mass_scaling import (

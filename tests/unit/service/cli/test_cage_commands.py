@@ -178,7 +178,7 @@ def test_all_that_is_wrong_in_a_file_ends_with_code_2(mine):
     assert first.startswith(f"{mine}:")
     assert "sinker_tube, weight_n_m: must be a number, not 'heavy'" in first
     assert "side_m = nan must be a finite number above 0" in second
-    assert last == "seacage: cage check: wrong in 2 places, as above."
+    assert last == "seacage: cage check: 2 to correct, as above."
     found = json.loads(run("check", mine, "--json").stdout)
     assert found["errors"] == [first, second]
 

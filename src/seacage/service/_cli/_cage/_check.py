@@ -36,7 +36,7 @@ def check(
         if wants_json():
             report({"ok": False, "errors": errors, "warnings": []})
         typer.echo("\n".join(errors), err=True)
-        raise exit_with(f"cage check: wrong in {len(errors)} places, as above.", Exit.USAGE)
+        raise exit_with(f"cage check: {len(errors)} to correct, as above.", Exit.USAGE)
     cage = Cage.from_toml(text, source=str(file))
     odd = [f"{file}:{one.line}: {one.sentence}" for one in cage_remarks(cage, text)]
     odd += [f"{file}: {why}" for why in _still_water_faults(cage)]
