@@ -13,7 +13,6 @@ from seacage.surrogates._prediction import Prediction
 
 # Prior standard deviation of the logarithm of each size, about the residual's own size
 SD_PRIOR_SD = 2.0
-
 NOISE_SHARE = 0.3  # prior median of the noise's scale, as a share of the residual's size
 REACH = 4.0  # half-width of the search, in prior standard deviations
 SETTLED = 1e-3  # largest change of a weight at which the reweighting ends
@@ -77,11 +76,9 @@ class ResidualModel:
         )
         rounds = self.rounds if self.degrees_of_freedom else 1
         for _ in range(rounds if size > 0.0 else 0):  # there is nothing to search in zeros
-            fitted = _search(fitted, centre, spread)
-            weight = fitted.mean_weight()
-            settled = np.max(np.abs(weight - fitted.weight)) < SETTLED
-            fitted = replace(fitted, weight=weight)
-            if settled:
+            before, fitted = fitted.weight, _search(fitted, centre, spread)
+            fitted = replace(fitted, weight=fitted.mean_weight())
+            if np.max(np.abs(fitted.weight - before)) < SETTLED:
                 break
         return fitted
 
@@ -133,9 +130,7 @@ class FittedResidual:
         value = np.concatenate([np.full(len(at), np.nan), self.value])[order]
         weight = np.concatenate([np.ones(len(at)), self.weight])[order]
         slow = self._filter(time, value, weight).smooth()
-        place = np.empty(len(order), dtype=int)
-        place[order] = np.arange(len(order))
-        own = place[: len(at)]
+        own = np.argsort(order)[: len(at)]
         return Prediction(mean=slow.mean[own], std=slow.std[own])
 
     @property

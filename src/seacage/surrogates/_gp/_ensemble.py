@@ -15,14 +15,8 @@ WARM_UP, THINNING = 24, 3  # trajectories before the first draw, and from one dr
 LEAPS, LENGTH = 6, 1.2  # leapfrog steps of a trajectory, and its length in standard deviations
 # Share of the trajectories to be accepted, which the step is adapted to in the warm-up
 ACCEPTED = 0.8
-
 STEP = 1e-3  # of the differences of gradients that give the curvature at the mode
 Parameters = Float[np.ndarray, " parameter"]
-
-
-def is_drawn(ensemble: Ensemble, *, observations: int) -> bool:
-    """Whether so many observations get an ensemble."""
-    return ensemble == "always" or (ensemble == "auto" and observations <= FEW)
 
 
 def widening(points: int) -> float:
@@ -61,11 +55,8 @@ def draw_members(mode: Mode, *, seed: int) -> Float[np.ndarray, "member paramete
             step *= math.exp((chance - ACCEPTED) / math.sqrt(1.0 + turn))
         elif (turn - WARM_UP) % THINNING == THINNING - 1:
             kept.append(np.clip(at, *bounds))
-
-    def loss(draw: Parameters) -> float:
-        return _loss_within_bounds(mode.evidence, draw)[0]
-
-    return np.stack(sorted(kept, key=loss))
+    kept.sort(key=lambda draw: _loss_within_bounds(mode.evidence, draw)[0])
+    return np.stack(kept)
 
 
 def _trajectory(
@@ -77,15 +68,13 @@ def _trajectory(
     step: float,
 ) -> tuple[Parameters, tuple[float, Parameters], Parameters]:
     """Where a leapfrog ends, the loss there and the momentum, in the whitened coordinates."""
-    gradient = now[1]
     for _ in range(LEAPS):
-        momentum = momentum - 0.5 * step * (scale.T @ gradient)
+        momentum = momentum - 0.5 * step * (scale.T @ now[1])
         at = at + step * (scale @ momentum)
         now = _loss_within_bounds(evidence, at)
-        gradient = now[1]
         if not math.isfinite(now[0]):
             break
-        momentum = momentum - 0.5 * step * (scale.T @ gradient)
+        momentum = momentum - 0.5 * step * (scale.T @ now[1])
     return at, now, momentum
 
 

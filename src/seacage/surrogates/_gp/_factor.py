@@ -56,7 +56,11 @@ class Cholesky:
 
     def inverse(self) -> Float[np.ndarray, "n n"]:
         """Of the covariance with noise."""
-        return inverse(self.lower)
+        from scipy.linalg import get_lapack_funcs
+
+        (potri,) = get_lapack_funcs(("potri",), (self.lower,))
+        half = np.tril(potri(self.lower, lower=True)[0])
+        return half + np.tril(half, -1).T
 
     def extended(
         self,
@@ -170,12 +174,3 @@ def _trtrs(precision: str) -> Callable[..., tuple[np.ndarray, int]]:
 
     (trtrs,) = get_lapack_funcs(("trtrs",), dtype=precision)
     return trtrs
-
-
-def inverse(lower: Float[np.ndarray, "n n"]) -> Float[np.ndarray, "n n"]:
-    """Of the matrix whose Cholesky factor this is."""
-    from scipy.linalg import get_lapack_funcs
-
-    (potri,) = get_lapack_funcs(("potri",), (lower,))
-    half = np.tril(potri(lower, lower=True)[0])
-    return half + np.tril(half, -1).T

@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting, setting_list
-from seacage.surrogates._gp._ensemble import Ensemble, draw_members, is_drawn, widening
+from seacage.surrogates._gp._ensemble import FEW, Ensemble, draw_members, widening
 from seacage.surrogates._gp._hyperparameters import Evidence, most_probable
 from seacage.surrogates._gp._kernels import (
     AbstractKernel,
@@ -28,7 +28,6 @@ MANY_OUTPUTS = 16  # more outputs than this are condensed before the kernel is f
 CONDENSED = 1e-6  # share of the outputs' variance that condensing may leave out
 NEGLIGIBLE = 0.02  # weight of a process in an average
 SHARED_POINTS = 5.0  # weight of the shared variance against each output's own roughness, in points
-
 
 Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]
 """Mean of each output, and variance, before the output's centre and amplitude."""
@@ -80,10 +79,9 @@ class GaussianProcess:
         ``y``: (n,) or (n, outputs).
         ``seed``: of the subset of points and of the random starts.
         """
-        what = "GaussianProcess.fit"
-        x = check_inputs(x, what=what)
+        x = check_inputs(x, what="GaussianProcess.fit")
         shape = "(rows,)" if np.ndim(y) == 1 else "(rows, outputs)"
-        y = check_outputs(y, what=what, rows=len(x), shape=shape)
+        y = check_outputs(y, what="GaussianProcess.fit", rows=len(x), shape=shape)
         table = y.reshape(len(y), -1)
         fitted = fit_process(
             StationaryKernel(self.kernel),
@@ -196,17 +194,14 @@ class FittedGaussianProcess:
         ``x``: one row per new case.
         ``y``: (new,) or (new, outputs), as in the training.
         """
-        what = "updated"
-        x = check_inputs(x, what=what, width=len(self.inputs.centre))
+        x = self._standardise(x, what="updated")
         shape = "(rows,)" if self.single else "(rows, outputs)"
-        y = check_outputs(y, what=what, rows=len(x), shape=shape, least=1)
-        y = y.reshape(len(x), -1)
+        y = check_outputs(y, what="updated", rows=len(x), shape=shape, least=1).reshape(len(x), -1)
         if y.shape[1] != len(self.centre):
             raise InputError(
-                f"{what}: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
+                f"updated: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
                 "Give the outputs of the training, in the same order."
             )
-        x = self.inputs.standardise(x)
         y = y - self._trend(x)
         members = [
             member.updated(x, y, amplitude=factor * self.amplitude)
@@ -269,8 +264,7 @@ class FittedGaussianProcess:
 
     def output(self, index: int) -> "FittedGaussianProcess":
         """One output as a model that answers (row,); it shares the factor."""
-        outputs = len(self.centre)
-        if not 0 <= index < outputs:
+        if not 0 <= index < (outputs := len(self.centre)):
             raise InputError(f"output {index} does not exist; this model has {outputs}, from 0.")
         return self.combined(np.eye(outputs)[index])
 
@@ -375,8 +369,7 @@ class FittedGaussianProcess:
         )
 
     def _standardise(self, x: RowFeature, *, what: str) -> RowFeature:
-        x = check_inputs(x, what=what, width=len(self.inputs.centre))
-        return self.inputs.standardise(x)
+        return self.inputs.standardise(check_inputs(x, what=what, width=len(self.inputs.centre)))
 
     def _noise(self, x: RowFeature) -> RowOutput:
         shares = self._average(self._rescale([member.noise_at(x) for member in self.members]))
@@ -384,9 +377,7 @@ class FittedGaussianProcess:
 
     def _average(self, parts: Sequence[Float[np.ndarray, "row *rest"]]) -> np.ndarray:
         """Of the members, by their share."""
-        if len(parts) == 1:
-            return parts[0]
-        return np.tensordot(self.share, np.stack(parts), axes=1)
+        return parts[0] if len(parts) == 1 else np.tensordot(self.share, np.stack(parts), axes=1)
 
     def _rescale(self, variances: Sequence[RowOutput]) -> list[RowOutput]:
         """Of the members, as shares of the amplitude's square."""
@@ -476,7 +467,8 @@ def fit_process(
     evidence = Evidence.of(kernel, scatter, standardised, likelihood_outputs)
     mode = most_probable(evidence, restarts=restarts, seed=seed, most=most)
     hyperparameters, wider = mode.log_parameters[None], 1.0
-    if is_drawn(ensemble, observations=likelihood_outputs.size):
+    few = likelihood_outputs.size <= FEW
+    if ensemble == "always" or (ensemble == "auto" and few):
         hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
     # noise factors are of all points, or there are none
     noise_factor = evidence.noise_factor if most else mode.evidence.noise_factor
@@ -533,9 +525,7 @@ def select_likelihood_outputs(
 ) -> Float[np.ndarray, "n some"]:
     """Standardised outputs of the likelihood, all of the same importance."""
     standardised = Scaling.of(y).standardise(y)
-    if unlike or y.shape[1] <= MANY_OUTPUTS:
-        return standardised
-    return condense(standardised)
+    return standardised if unlike or y.shape[1] <= MANY_OUTPUTS else condense(standardised)
 
 
 def condense(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n some"]:

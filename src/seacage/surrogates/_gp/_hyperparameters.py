@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Rows
-from seacage.surrogates._gp._factor import JITTERS, Cholesky, Spectrum, inverse
+from seacage.surrogates._gp._factor import JITTERS, Cholesky, Spectrum
 from seacage.surrogates._gp._kernels import AbstractKernel, Prior
 from seacage.surrogates._gp._noise import (
     NOISE_BOUNDS,
@@ -35,7 +35,6 @@ SHORT = -2.0
 SMALL, MORE = 40, 4
 # Rounds of noise factors and search with Student's t, on the subset and then on all points
 ROUNDS, ROUNDS_ALL = 25, 6
-
 ROUND = 4  # L-BFGS steps in each of them
 
 
@@ -101,10 +100,10 @@ class Evidence(Rows):
         outputs = self.y.shape[1]
         covariance = self.kernel.evaluate(kernel, self.x, self.x)
         scale, pull_noise = self.noise.with_pullback(noise, self.x)
-        lower = Cholesky.of(covariance.value, scale * self.noise_factor).lower
-        precision = inverse(lower)
+        factor = Cholesky.of(covariance.value, scale * self.noise_factor)
+        precision = factor.inverse()
         weights = precision @ self.y
-        value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(lower)))
+        value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(factor.lower)))
 
         adjoint = 0.5 * (outputs * precision - weights @ weights.T)
         of_noise = pull_noise(np.diag(adjoint) * self.noise_factor)
@@ -162,10 +161,6 @@ def most_probable(
     """Most probable log hyperparameters.
 
     Each start is improved on a random subset, the best one then on all points.
-
-    ``evidence``: all points.
-    ``restarts``: starts beside the one at the prior's mean; few points get several times as many.
-    ``seed``: of the subset and of the starts.
     """
     random = np.random.default_rng(seed)
     if len(evidence.x) <= SMALL:

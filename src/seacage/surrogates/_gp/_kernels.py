@@ -18,16 +18,12 @@ NFeature = Float[np.ndarray, "n feature"]
 PerParameter = Float[np.ndarray, " parameter"]
 RowFeature = Float[np.ndarray, "row feature"]
 KernelName = Literal["squared-exponential", "matern-5/2", "matern-3/2"]
-PUBLIC: tuple[KernelName, ...] = get_args(KernelName)
 Normal = tuple[float, float]  # mean and standard deviation of a log hyperparameter
 VARIANCE_PRIOR: Normal = (0.0, 2.0)  # of a log variance: the outputs have unit variance
-
 # Of a log length in spreads of a feature, which is about 3.5 across. The median grows with the root
 # of the number of features, as distances do: without that a prior over many inputs would make every
 # case independent of the next.
 LENGTH_PRIOR: Normal = (math.log(3.0), 1.5)
-
-
 # Of the variance that rows of a case have in common, as of noise
 CASE_PRIOR: Normal = (math.log(1e-3), 2.5)
 
@@ -85,7 +81,6 @@ class Evaluation:
 
 # Function of inputs: their covariances with some points
 Covariances = Callable[[np.ndarray], Evaluation]
-
 Leaf = Callable[..., Any]  # function of inputs whose results add and multiply
 
 
@@ -185,8 +180,7 @@ class StationaryKernel(AbstractKernel):
 
     def prior(self, width: int) -> Prior:
         variance = [self.variance] if self.variance else []
-        mean, sd = self.length
-        general = (mean + 0.5 * math.log(width), sd)
+        general = (self.length[0] + 0.5 * math.log(width), self.length[1])
         lengths = self.lengths or [general] * (self.size(width) - len(variance))
         return Prior.of(*variance, *lengths)
 
@@ -346,7 +340,7 @@ class Product(AbstractComposition):
 
 
 # By the name under which a saved model finds its kernel again
-_SAVED: dict[str, AbstractKernel] = {name: StationaryKernel(name) for name in PUBLIC}
+_SAVED: dict[str, AbstractKernel] = {name: StationaryKernel(name) for name in get_args(KernelName)}
 
 
 def register_kernels(*kernels: AbstractKernel) -> None:

@@ -160,13 +160,8 @@ class NoiseByInput(AbstractNoise):
 
 def noise_named(name: str, x: NFeature, *, outputs: int) -> AbstractNoise:
     """Noise that a user asks for by name, for these standardised inputs."""
-    if name == "per-output" and outputs > 1:
-        return NoisePerOutput(outputs)
-    if name == "student-t":
-        return StudentNoise()
-    if name == "by-input":
-        return NoiseByInput(_spread_out(x))
-    return WhiteNoise()
+    name = "white" if name == "per-output" and outputs == 1 else name
+    return restore_noise(name, lambda: _spread_out(x), outputs=outputs)
 
 
 def restore_noise(
@@ -203,8 +198,7 @@ def noise_factor_of_new(
     square: Float[np.ndarray, " row"],
     variance: Float[np.ndarray, " row"],  # of the prediction, without noise
     *,
-    # As for ``noise_factor_of``
-    scale: float,
+    scale: float,  # as for ``noise_factor_of``
     outputs: int,
 ) -> Float[np.ndarray, " row"]:
     """Noise factor of new cases, each from the prediction of it by the others."""

@@ -10,11 +10,9 @@ from jaxtyping import Float, Int
 from seacage.surrogates._gp._factor import Cholesky
 
 DISTINCT = 1e-6  # eigenvalues of different subspaces, at least
-
 # Noise over the variance of a point from which factors in single precision give variances. Rounding
 # leaves an error of some 1e-6 of the variance there
 SINGLE_NOISE = 5e-5
-
 Part = tuple[Float[np.ndarray, "image _"], Cholesky]  # basis and factor
 
 
@@ -54,7 +52,10 @@ class Orbits:
         return cls(
             quotient=quotient,
             parts=tuple(parts),
-            of_variance=tuple(_to_single(one) if single else one for one in parts),
+            of_variance=tuple(
+                (basis, replace(one, lower=one.lower.astype(np.float32)) if single else one)
+                for basis, one in parts
+            ),
         )
 
     def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
@@ -89,11 +90,6 @@ class Orbits:
         points = len(factor.lower) // basis.shape[1]
         first = self.solve(np.eye(images * points, points)).reshape(images, points, points)
         return first[self.quotient].transpose(0, 3, 1, 2).reshape(images * points, -1)
-
-
-def _to_single(part: Part) -> Part:
-    basis, factor = part
-    return basis, replace(factor, lower=factor.lower.astype(np.float32))
 
 
 def irreducible_bases(

@@ -1,6 +1,7 @@
 """Posterior of a Gaussian process: condition on points, predict, differentiate, update."""
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -21,8 +22,10 @@ from seacage.surrogates._prediction import Moments
 NFeature = Float[np.ndarray, "n feature"]
 NOutput = Float[np.ndarray, "n output"]
 NewFeature = Float[np.ndarray, "new feature"]
+NewOutput = Float[np.ndarray, "new output"]
 PerN = Float[np.ndarray, " n"]
 PerNew = Float[np.ndarray, " new"]
+PerOutput = Float[np.ndarray, " output"]
 RowFeature = Float[np.ndarray, "row feature"]
 RowOutput = Float[np.ndarray, "row output"]
 RowShared = Float[np.ndarray, "row shared"]
@@ -140,8 +143,8 @@ class Posterior(Process):
         if len(x) * len(self.x) <= CHUNK:
             return self._predict(x)
         parts = [self._predict(x[rows]) for rows in chunks(len(x), CHUNK // len(self.x))]
-        mean, variance = zip(*parts, strict=True)
-        return np.concatenate(mean), np.concatenate(variance)
+        mean, variance = map(np.concatenate, zip(*parts, strict=True))
+        return mean, variance
 
     def mean(self, x: RowFeature) -> RowOutput:
         """The mean of ``predict`` alone, which asks nothing of the factor."""
@@ -209,51 +212,29 @@ class Posterior(Process):
         """The outputs that it was conditioned on."""
         return self.factor.observations(self.weights)
 
-    def updated(
-        self,
-        # The new points
-        x: NewFeature,
-        y: Float[np.ndarray, "new output"],
-        *,
-        # Standard deviation of each output that the kernel's is a share of
-        amplitude: Float[np.ndarray, " output"],
-    ) -> "Posterior":
+    def updated(self, x: NewFeature, y: NewOutput, *, amplitude: PerOutput) -> "Posterior":
         """Conditioned on more points, with the same hyperparameters.
 
         The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
         needs the decomposition anew, in O(n^3).
-        """
-        noise_factor = np.append(self.noise_factor, self._new_noise_factors(x, y, amplitude))
-        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
-        factor = self._extend(x, noise_factor[len(self.x) :])
-        if factor is None:
-            return self.condition(all_x, all_y, noise_factor=noise_factor)
-        return replace(
-            self, x=all_x, noise_factor=noise_factor, weights=factor.solve(all_y), factor=factor
-        )
 
-    def _extend(self, x: NewFeature, noise_factor: PerNew) -> Cholesky | None:
+        ``amplitude``: standard deviation of each output that the kernel's is a share of.
+        """
         from scipy.linalg import LinAlgError
 
-        if not isinstance(self.factor, Cholesky):
-            return None
-        try:
-            return self.factor.extended(
-                self.cross(x),
-                self.kernel.covariance(self.log_parameters, x, x),
-                self.noise.with_pullback(self.log_noise, x)[0] * noise_factor,
-            )
-        except LinAlgError:
-            return None  # The whole can afford a larger jitter.
+        new_factor = self._new_noise_factors(x, y, amplitude)
+        all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
+        noise_factor = np.append(self.noise_factor, new_factor)
+        if isinstance(self.factor, Cholesky):
+            noise = self.noise.with_pullback(self.log_noise, x)[0] * new_factor
+            corner = self.kernel.covariance(self.log_parameters, x, x)
+            with suppress(LinAlgError):  # otherwise the whole has a larger jitter
+                factor = self.factor.extended(self.cross(x), corner, noise)
+                return self._posterior(all_x, noise_factor, factor.solve(all_y), factor)
+        return self.condition(all_x, all_y, noise_factor=noise_factor)
 
-    def combined(
-        self,
-        share: Float[np.ndarray, " output"],  # of each output
-        *,
-        # Standard deviation of each output that the kernel's is a share of
-        amplitude: Float[np.ndarray, " output"],
-    ) -> "Posterior":
-        """With one output: the sum of the outputs times their share."""
+    def combined(self, share: PerOutput, *, amplitude: PerOutput) -> "Posterior":
+        """The sum of the outputs times their share; ``amplitude`` as for ``updated``."""
         weights = self.weights @ share[:, None]
         if not isinstance(self.factor, Spectrum):
             return replace(self, weights=weights)
@@ -264,12 +245,7 @@ class Posterior(Process):
         factor = self.factor.mixed(np.where(share == 0.0, 0.0, variance))
         return replace(self, weights=weights, factor=factor, log_noise=log_noise)
 
-    def _new_noise_factors(
-        self,
-        x: NewFeature,
-        y: Float[np.ndarray, "new output"],
-        amplitude: Float[np.ndarray, " output"],
-    ) -> PerNew:
+    def _new_noise_factors(self, x: NewFeature, y: NewOutput, amplitude: PerOutput) -> PerNew:
         """Noise factor of new points, each from its prediction by the old ones."""
         if not isinstance(self.noise, StudentNoise):
             return np.ones(len(x))

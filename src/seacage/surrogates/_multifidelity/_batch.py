@@ -39,8 +39,7 @@ class BatchedLinks:
     @classmethod
     def of(cls, members: Sequence[_gp.Posterior], *, most: int) -> Self:
         """Of members with one kernel; those with fewer points than the most get some at 0."""
-        padded = [np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in members]
-        points = np.stack(padded)
+        points = np.stack([np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in members])
         log_parameters = np.stack([one.log_parameters for one in members])
 
         def covariance(leaf: _gp.AbstractKernel, own: np.ndarray) -> _gp.Leaf:

@@ -21,19 +21,14 @@ DELTA_LENGTH = (math.log(3.0), 1.1)
 LINK_LENGTH = (math.log(6.0), 0.9)
 # Mean and sd of the line's log variance about a ratio of 1, in spreads of both levels
 ALIKE_LINE = (-4.0, 2.0)
-
 # Mean and sd of the log variance of a line in the inputs, in their spreads
 TREND = (-6.0, 1.0)
-
 # Mean and sd of delta's log length less that of the lowest level, where that is known and short. A
 # level that turns fast with a feature leaves something that does so too. One that hardly follows a
 # feature may do so wrongly: of the remainder there, a long length says nothing.
 KNOWN_LENGTH = (0.2, 0.5)
-
 # A log length of the lowest level counts as known only so far below delta's general one
 STRANGE = 2.5
-
-
 # The bend of the published kernel: any smooth curve of the level below, alike everywhere
 FREE = _gp.StationaryKernel(BELL, variance=None, length=LINK_LENGTH)
 

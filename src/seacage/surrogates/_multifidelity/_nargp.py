@@ -39,7 +39,6 @@ ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
 # Step of central differences, in spreads of a feature; their error falls with its square
 DIFFERENCE = 1e-4
 SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature
-
 # Two levels are taken for the same quantity where their difference has less than this share of the
 # upper one's spread
 ALIKE = 0.5
@@ -141,13 +140,12 @@ class AbstractMultifidelity(ABC):
         seed: int,
     ) -> _gp.FittedGaussianProcess:
         rest = y - x @ slope[:, None]
-        rest = rest - rest.mean(axis=0)
         return _gp.fit_process(
             kernel,
             x,
             y,
             # In spreads of the level itself, whatever is left of it, as the priors are.
-            likelihood_outputs=rest / Scaling.of(y).unit,
+            likelihood_outputs=(rest - rest.mean(axis=0)) / Scaling.of(y).unit,
             noise=self.noise,
             ensemble=self.ensemble,
             slope=slope,
@@ -307,7 +305,11 @@ class FittedNARGP:
         """
         level = self._level(level, lowest=1, what="jacobian")
         x = check_inputs(x, what="jacobian", width=self._width)
-        below = self._lowest_moments(x)
+        if isinstance(self.lower, _gp.FittedGaussianProcess):
+            below = self.lower.moments(x)
+        else:
+            step = DIFFERENCE * self.upper[0].inputs.unit[:-1]
+            below = _central_differences(self.lower, x, step=step)
         return propagate_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
 
     def updated(
@@ -353,8 +355,7 @@ class FittedNARGP:
         for out, kept in folds.each():
             lower = lent.rows(out) if lent else below._without(x[out]).predict(x[out])  # noqa: SLF001
             reduced = top.kept(kept)
-            step = [_Step(reduced)]
-            mean, variance = propagate_moments(step, x[out], lower.mean, lower.std**2)
+            mean, variance = propagate_moments([_Step(reduced)], x[out], lower.mean, lower.std**2)
             variance += reduced.noise_at(np.column_stack([x[out], lower.mean]))
             parts.append(log_density(y[out], mean, variance))
         return np.concatenate(parts)
@@ -393,11 +394,6 @@ class FittedNARGP:
 
     def _steps(self, level: int) -> "list[_Step]":
         return [_Step(process) for process in self.upper[: level - 1]]
-
-    def _lowest_moments(self, x: RowFeature) -> Moments:
-        if isinstance(self.lower, _gp.FittedGaussianProcess):
-            return self.lower.moments(x)
-        return _central_differences(self.lower, x, step=DIFFERENCE * self.upper[0].inputs.unit[:-1])
 
     def _lowest(self, x: RowFeature, *, noisy: bool) -> Prediction:
         if self.lent is None:
@@ -442,7 +438,12 @@ class FittedNARGP:
             raise ModelError(f"The saved NARGP {need}. Check what is passed as `lower`.")
         own = _gp.processes_from_arrays(settings, "levels", arrays)
         fitted = cls(own=own, lent=lower, nested=setting(settings, "nested", bool))
-        _check_chain(fitted)
+        widths = {len(process.inputs.centre) - 1 for process in fitted.upper}
+        if own and not lent:
+            widths.add(len(own[0].inputs.centre))
+        links = all(isinstance(process.posterior.kernel, LinkKernel) for process in fitted.upper)
+        if not own or len(widths) > 1 or not links or not all(process.single for process in own):
+            raise ModelError("The saved NARGP's levels do not fit together. Train the model again.")
         return fitted
 
 
@@ -497,9 +498,8 @@ def _lengths_below(fitted: FittedNARGP, x: NFeature) -> tuple[float, ...]:
     """Log lengths of the lowest level in spreads of these inputs, where it was learned here."""
     if fitted.lent is not None:
         return ()
-    lowest = fitted.own[0]
-    log_length = lowest.posterior.log_parameters[1:]
-    return tuple((log_length + np.log(lowest.inputs.unit / Scaling.of(x).unit)).tolist())
+    ratio = fitted.own[0].inputs.unit / Scaling.of(x).unit
+    return tuple((fitted.own[0].posterior.log_parameters[1:] + np.log(ratio)).tolist())
 
 
 def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.ndarray, " n"]:
@@ -524,16 +524,3 @@ def _central_differences(lower: Predicts, x: RowFeature, *, step: PerFeature) ->
     return Moments(
         mean=here.mean, variance=here.std**2, mean_slope=mean_slope, variance_slope=variance_slope
     )
-
-
-def _check_chain(fitted: FittedNARGP) -> None:
-    """Refuse a saved chain whose levels do not fit on one another."""
-    widths = {len(process.inputs.centre) - 1 for process in fitted.upper}
-    if fitted.lent is None and fitted.own:
-        widths.add(len(fitted.own[0].inputs.centre))
-    steps = all(
-        process.single and isinstance(process.posterior.kernel, LinkKernel)
-        for process in fitted.upper
-    )
-    if not fitted.own or len(widths) > 1 or not steps or not fitted.own[0].single:
-        raise ModelError("The saved NARGP's levels do not fit together. Train the model again.")

@@ -19,7 +19,6 @@ RowFeature = Float[np.ndarray, "row feature"]
 RULES = ((0.1, 3), (0.25, 5), (0.45, 8), (0.8, 13), (1.8, 24), (3.2, 40), (np.inf, 64))
 # Above it even spacing needs fewer nodes: Gauss-Hermite puts many where there is no weight
 GAUSS_HERMITE_UP_TO = 13
-
 CHUNK = 2**18  # nodes held at once by each level, whatever the number of rows
 REACH = 5.0  # of the evenly spaced nodes, in sd either way
 
@@ -77,12 +76,11 @@ def propagate_moments(
 
 
 def propagate_slope(
-    # As there
     levels: Sequence[SlopedLevel],
     x: RowFeature,
     below: Moments,  # of the value below the first level, with their gradients
 ) -> RowFeature:
-    """Gradient in each row of the mean that ``carried`` gives there."""
+    """Gradient in each row of the mean that ``propagate_moments`` gives there."""
     slope = np.empty_like(x)
     for count, rows in _by_rule(levels, x, below.mean, below.variance):
         node, weight = rule(count)
