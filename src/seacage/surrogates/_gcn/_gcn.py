@@ -175,11 +175,8 @@ class GCN:
         weight = self.node_weight
         if weight is None:
             weight = _deep_weight(graph) if self.kind == "paper" else np.ones(graph.nodes)
-        if (
-            len(weight) != graph.nodes
-            or not np.all(weight >= 0.0)
-            or not 0 < np.sum(weight) < np.inf
-        ):
+        positive = np.all(weight >= 0.0) and 0 < np.sum(weight) < np.inf
+        if len(weight) != graph.nodes or not positive:
             raise InputError(
                 f"GCN: node_weight must be {graph.nodes} finite numbers of at least 0, one per "
                 "node, and not all 0."
@@ -256,9 +253,7 @@ def _cases(
     """All cases, and which of them are held out."""
     x, shape = _check_cases(x, node_position, graph, what="GCN.fit")
     if isinstance(validation, tuple) and len(validation) == 2:
-        other, other_shape = _check_cases(
-            validation[0], validation[1], graph, what="GCN.fit, validation"
-        )
+        other, other_shape = _check_cases(*validation, graph, what="GCN.fit, validation")
         if other.shape[1] != x.shape[1]:
             raise InputError(
                 f"GCN.fit: validation has {other.shape[1]} features per row, x has {x.shape[1]}. "

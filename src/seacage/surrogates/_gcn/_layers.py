@@ -12,8 +12,6 @@ Kind = Literal["paper", "modal"]
 Numbers = Any  # an array of NumPy, or of JAX while it trains
 Parameters = dict[str, np.ndarray]  # what training changes, by name
 Shape = tuple[int, ...]
-
-
 TOKEN = 128  # channels of the modal network's sea state
 
 

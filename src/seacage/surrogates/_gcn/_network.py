@@ -38,12 +38,10 @@ class Network:
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
-        width = self.parameters["place"].shape[1]
-        modes = len(self.parameters["mode"]) if "mode" in self.parameters else 0
         settings: Settings = {
             "kind": self.kind,
-            "width": width,
-            "modes": modes,
+            "width": self.parameters["place"].shape[1],
+            "modes": len(self.parameters.get("mode", ())),
             "spread": self.spread,
         }
         return settings, {
@@ -71,9 +69,14 @@ class Network:
             width=setting(settings, "width", int),
             modes=setting(settings, "modes", int),
         )
+        edges = np.rint(array(arrays, "edges", None, 2)).astype(int)
+        try:
+            graph = Graph.of(edges, rest)
+        except InputError as error:
+            raise ModelError(f"The saved GCN is damaged: {error}") from error
         return cls(
             kind=kind,
-            graph=_restore_graph(array(arrays, "edges", None, 2), rest),
+            graph=graph,
             scaling=Scaling(
                 centre=feature_centre, spread=array(arrays, "feature_spread", len(feature_centre))
             ),
@@ -89,10 +92,3 @@ def standard_rest(graph: Graph) -> Float[np.ndarray, "node 3"]:
     """Rest position as a feature of the nodes."""
     rest = graph.rest_position
     return Scaling.of(rest).standardise(rest)
-
-
-def _restore_graph(edges: Float[np.ndarray, "edge 2"], rest: Float[np.ndarray, "node 3"]) -> Graph:
-    try:
-        return Graph.of(np.rint(edges).astype(int), rest)
-    except InputError as error:
-        raise ModelError(f"The saved GCN is damaged: {error}") from error

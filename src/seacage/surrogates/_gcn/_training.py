@@ -17,7 +17,6 @@ from seacage.surrogates._gcn._recipe import FEWEST_BATCHES, LARGEST_BATCH, Recip
 
 # Share of the averaged weights that a step keeps: an average over about the last fifty steps
 REMEMBERED = 0.98
-
 ADAM = optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam())
 
 
@@ -51,12 +50,10 @@ def train_network(
     average of the parameters is evaluated and kept. ``progress`` is called as ("gcn",
     epoch, epochs); training that ends early reports all epochs as done.
     """
-    single = {name: jnp.asarray(values, jnp.float32) for name, values in first.items()}
-    net = tuple(
-        jnp.asarray(a, jnp.float32)
-        for a in (training_set.rest, training_set.propagation, training_set.weight)
-    )
-    x, target = (jnp.asarray(a, jnp.float32) for a in (training_set.x, training_set.target))
+    to_single = partial(jnp.asarray, dtype=jnp.float32)
+    single = {name: to_single(values) for name, values in first.items()}
+    net = tuple(map(to_single, (training_set.rest, training_set.propagation, training_set.weight)))
+    x, target = to_single(training_set.x), to_single(training_set.target)
     unseen = x[training_set.held_out], target[training_set.held_out]
     random = np.random.default_rng(seed)
     state = (single, ADAM.init(single), single)

@@ -1,6 +1,5 @@
 """Covariance of loads in waves: of seas that are alike, and of images of one simulated case."""
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -86,8 +85,3 @@ def case_inputs(
     along = np.sum(current[:, 1:] * wave, axis=1)
     numbers = np.broadcast_to(number, len(x))
     return np.column_stack([hs, current, wave, log_tp, along, np.sqrt(hs), numbers])
-
-
-def case_variance(log_parameters: Float[np.ndarray, " parameter"]) -> float:
-    """Variance that the images of a case have in common, of the outputs' unit variance."""
-    return math.exp(log_parameters[-1])

@@ -1,5 +1,6 @@
 """Surrogate of all lines' loads in waves: mean, standard deviation, three-hour maximum, wear."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
@@ -10,22 +11,18 @@ from jaxtyping import Float
 from seacage.conventions import InputError
 from seacage.surrogates import _gp as gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting_list
-from seacage.surrogates._loads._case_kernel import MEAN, WAVE_EFFECT, case_inputs, case_variance
+from seacage.surrogates._loads._case_kernel import MEAN, WAVE_EFFECT, case_inputs
 from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, Loads
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._shape._symmetry import Symmetry
 
 HEIGHT = 3  # feature of ``sea_features`` that holds Hs
 OFFSET = 0.05  # added before a logarithm is taken, over the statistic's median [-]
-
 # Of all cases together, as memory grows with their square; each case has as many
 MOST_IMAGES = 4000
-
 # Images that hyperparameters are learned from; all others count in the answer alone
 MOST_POINTS = 1500
-
 LEAST_HS = 1e-3  # of the training [m]
-
 HELD = 0.95  # share of left-out cases that intervals of this level hold
 
 
@@ -285,7 +282,8 @@ class FittedLoadGP:
             mean = process.mean(x)
             return mean, np.full_like(mean, np.nan)
         found = process.predict(x)
-        of_case = case_variance(process.posterior.log_parameters) * process.amplitude**2
+        # A ``CaseKernel`` has the log variance that the images of a case have in common at the end.
+        of_case = math.exp(process.posterior.log_parameters[-1]) * process.amplitude**2
         behind = np.maximum(found.std**2 - of_case, 0.0)
         std = np.sqrt(behind + noise * (of_case + process.noise_at(x)))
         return found.mean, self.widening[name] * std

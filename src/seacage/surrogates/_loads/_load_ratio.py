@@ -13,13 +13,10 @@ IntPerWindow = Int[np.ndarray, " window"]
 # Standard deviations by which a log ratio is expected to differ from 0, and to change within one
 # standard deviation of a variable [-]
 CONSTANT_SD, SLOPE_SD = 0.5, 0.5
-
 PROOF_SD = 2.0  # standard errors by which held-out errors have to fall [-]
-
 # Errors of a log ratio beyond it count as much: of a line that is slack nearly all the time, whose
 # ratio to level 1 may be any [-]
 MOST_ERROR = 0.5
-
 HUBER = 1.345  # robust standard deviations from where a window weighs less [-]
 ROUNDS = 8  # of weights
 LEAST_BLOCKS = 4  # of time, for there to be a ratio

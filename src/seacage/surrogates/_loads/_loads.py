@@ -12,7 +12,6 @@ from seacage.surrogates._prediction import Prediction, interval_ends
 
 EULER = 0.5772156649015329  # mean of a standard Gumbel variable
 HALVINGS = 40  # of the bracket of a quantile
-
 # Of the quadrature over a logarithm's normal distribution
 NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
 
@@ -199,9 +198,7 @@ class Loads(Rows):
 
     def known(self, rows: Bool[np.ndarray, " case"]) -> Self:
         """The same with NaN in all other rows."""
-        parts = {one.name: getattr(self, one.name) for one in fields(self)}
-        found = {name: part for name, part in parts.items() if isinstance(part, Rows)}
-        return replace(self, **{name: _where(rows, part) for name, part in found.items()})
+        return _where(rows, self)
 
     def widened(self, edge: Self, rows: Bool[np.ndarray, " case"]) -> Self:
         """The same, in some rows with how far the loads are from others added in quadrature."""
@@ -218,12 +215,7 @@ class Loads(Rows):
 
 
 def _where(rows: Bool[np.ndarray, " case"], part: Any) -> Any:
-    arrays = {one.name: getattr(part, one.name) for one in fields(part)}
-    return replace(
-        part,
-        **{
-            name: np.where(rows[:, None], values, np.nan)
-            for name, values in arrays.items()
-            if isinstance(values, np.ndarray)
-        },
-    )
+    if isinstance(part, Rows):
+        parts = {one.name: getattr(part, one.name) for one in fields(part)}
+        return replace(part, **{name: _where(rows, one) for name, one in parts.items()})
+    return np.where(rows[:, None], part, np.nan) if isinstance(part, np.ndarray) else part

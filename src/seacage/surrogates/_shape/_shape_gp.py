@@ -24,7 +24,6 @@ RowMode = Float[np.ndarray, "row mode"]
 RowNode3 = Float[np.ndarray, "row node 3"]
 # Share of the cases that an interval of so many standard deviations is to cover
 LEVEL, DEVIATIONS = 0.95, 1.959964
-
 Nodes = slice | Int[np.ndarray, " node"]  # some nodes: a slice, or their numbers
 EVERY = slice(None)
 BLOCK = 4096  # rows of one coordinate that are answered at a time

@@ -16,7 +16,6 @@ Node3 = Float[np.ndarray, "node 3"]
 RowNode3 = Float[np.ndarray, "row node 3"]
 # Half the width over which neighbouring sectors pass into one another [rad]
 BAND = math.radians(3.0)
-
 SLACK_SPEED = 0.02  # below this the current's direction fades, and all images have a share [m/s]
 COINCIDE = 0.01  # how far a node's image may lie from a node [m]
 

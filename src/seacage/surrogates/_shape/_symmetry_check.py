@@ -12,7 +12,6 @@ from seacage.surrogates._shape._symmetry import Symmetry
 
 # Cases that the trial model learns from, and cases that it is asked about, at most
 TEACH, JUDGE = 400, 100
-
 COMPRESSION = 0.01  # of the trial model [m]
 FEW = 20  # least number of cases that can show an asymmetry
 

@@ -41,7 +41,7 @@ class AbstractRegion(ABC):
 
     @abstractmethod
     def to_settings(self) -> Settings:
-        """Plain values that ``saved_region`` understands."""
+        """Plain values that ``restore_region`` understands."""
 
     def contains(self, x: Float[np.ndarray, "row feature"]) -> Bool[np.ndarray, " row"]:
         """Whether each input lies in the region, its rim included."""
@@ -109,8 +109,7 @@ class Box(AbstractRegion):
     def places(self, x: Float[np.ndarray, "row feature"]) -> Float[np.ndarray, "row axis"]:
         lower, upper = np.array(self.lower), np.array(self.upper)
         place = (x - lower) / (upper - lower)
-        closed = list(self.closed)
-        place[:, closed] %= 1.0
+        place[:, list(self.closed)] %= 1.0
         return place
 
     def description(self) -> str:
@@ -165,7 +164,14 @@ class Disc(AbstractRegion):
         turn = np.arctan2(north, east) / (2.0 * np.pi)
         place[:, 1] = turn + (turn < 0.0)
         if self.length_first:
-            _check_length(x[:, 0], self.radius * place[:, 0], margin=1e-6 * self.radius)
+            length = self.radius * place[:, 0]
+            off = np.flatnonzero(np.abs(x[:, 0] - length) > 1e-6 * self.radius)
+            if len(off):
+                raise InputError(
+                    f"Disc: row {off[0]} says its length is {x[off[0], 0]:g}, but its vector is "
+                    f"{length[off[0]]:g} long. Make features with `current_features`, or pass "
+                    "`length_first=False` for (east, north) alone."
+                )
         return place
 
     def description(self) -> str:
@@ -202,16 +208,3 @@ def _inside(place: Float[np.ndarray, "row axis"]) -> Bool[np.ndarray, " row"]:
     # Column by column, which is quicker than along each short row.
     inside = [(one >= -MARGIN) & (one <= 1.0 + MARGIN) for one in place.T]
     return np.logical_and.reduce(inside)
-
-
-def _check_length(
-    given: Float[np.ndarray, " row"], length: Float[np.ndarray, " row"], *, margin: float
-) -> None:
-    off = np.flatnonzero(np.abs(given - length) > margin)
-    if len(off):
-        row = off[0]
-        raise InputError(
-            f"Disc: row {row} says its length is {given[row]:g}, but its vector is "
-            f"{length[row]:g} long. Make features with `current_features`, or pass "
-            "`length_first=False` for (east, north) alone."
-        )

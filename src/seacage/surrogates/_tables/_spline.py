@@ -66,11 +66,11 @@ class Spline:
         # Whole columns at a time: the inner loops run over the rows, not over four weights.
         weights, first = [np.ones(len(place))], np.zeros(len(place), dtype=np.int32)
         offset = np.zeros(1, dtype=np.int32)
-        sizes = _sizes(self.shape, self.periodic)
-        for axis, (count, closed, size) in enumerate(
-            zip(self.shape, self.periodic, sizes, strict=True)
+        sizes = coefficient_counts(self.shape, self.periodic)
+        for axis, count, closed, size in zip(
+            place.T, self.shape, self.periodic, sizes, strict=True
         ):
-            along, cell = _pieces(place[:, axis], count if closed else count - 1)
+            along, cell = _pieces(axis, count if closed else count - 1)
             weights = [one * other for one in weights for other in along]
             first = first * np.int32(size) + cell
             offset = (offset[:, None] * size + np.arange(4, dtype=np.int32)).ravel()
@@ -89,13 +89,8 @@ def nodes(shape: Sequence[int], periodic: Sequence[bool]) -> Float[np.ndarray, "
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines))
 
 
-def coefficient_count(shape: Sequence[int], periodic: Sequence[bool]) -> int:
-    """Rows of coefficients that a grid needs."""
-    return prod(_sizes(shape, periodic))
-
-
-def _sizes(shape: Sequence[int], periodic: Sequence[bool]) -> list[int]:
-    # A closed axis repeats its first three, so that no index has to wrap.
+def coefficient_counts(shape: Sequence[int], periodic: Sequence[bool]) -> list[int]:
+    """Along each axis; a closed one repeats its first three, so that no index has to wrap."""
     return [count + 2 + closed for count, closed in zip(shape, periodic, strict=True)]
 
 
@@ -125,8 +120,7 @@ def _open(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coeffici
     # i-1..i+1, and the first and the last row that the third derivative does not jump.
     band = np.zeros((9, count + 2))
     for offset, weight in ((-1, 1.0 / 6.0), (0, 4.0 / 6.0), (1, 1.0 / 6.0)):
-        rows = np.arange(1, count + 1)
-        band[4 - offset, rows + offset] = weight
+        band[4 - offset, 1 + offset : count + 1 + offset] = weight
     for offset, weight in enumerate((1.0, -4.0, 6.0, -4.0, 1.0)):
         band[4 - offset, offset] = weight
         band[4 + offset, count + 1 - offset] = weight

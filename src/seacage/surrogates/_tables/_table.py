@@ -13,7 +13,7 @@ from seacage.conventions import InputError, ModelError
 from seacage.surrogates._arrays import Arrays, Settings, array, setting, setting_list
 from seacage.surrogates._prediction import Prediction, Predicts, check_inputs
 from seacage.surrogates._tables._region import AbstractRegion, restore_region
-from seacage.surrogates._tables._spline import FEWEST, Spline, coefficient_count, nodes
+from seacage.surrogates._tables._spline import FEWEST, Spline, coefficient_counts, nodes
 
 START = 12  # nodes along each axis of the first grid
 CHECKS = 2000  # random inputs at which a grid is held against the model, each round anew
@@ -22,7 +22,6 @@ GROWTH = (1.25, 3.0)  # least and most that an axis grows from one round to the 
 # Share of the answers' size that a standard deviation has to reach to be worth following
 ROUNDING = 1e-9
 _PRECISION = ("tolerance", "std_tolerance", "mean_error", "std_error")  # as saved
-
 
 # Answers of a model without and with noise; twice the same one where noise is not asked for
 Query = Callable[[Float[np.ndarray, "row feature"]], tuple[Prediction, Prediction]]
@@ -131,7 +130,9 @@ class Table:
             table = _tabulate(query, region, shape, least_std=least_std)
             table = replace(table, tolerance=tolerance, std_tolerance=std_tolerance)
             for _ in range(2):
-                table = _verify(table, query, random)
+                errors = _errors(table, query, random.uniform(size=(CHECKS, len(shape))))
+                mean, std = map(max, (table.mean_error, table.std_error), errors)
+                table = replace(table, mean_error=mean, std_error=std)
                 if table.excess > 1.0:
                     break
             else:
@@ -203,7 +204,7 @@ class Table:
                 f"The saved table's grid has {len(shape)} axes and its region "
                 f"{len(region.periodic)}. The file is damaged. Make the table again."
             )
-        rows = coefficient_count(shape, region.periodic)
+        rows = prod(coefficient_counts(shape, region.periodic))
         fields = (2 + setting(settings, "noise", bool)) * outputs
         coefficients = array(arrays, "coefficients", rows, fields)
         return cls(
@@ -232,14 +233,6 @@ def _tabulate(
         mean_error=0.0,
         std_error=0.0,
         least_std=np.maximum(least, ROUNDING * np.abs(mean).max(axis=0)),
-    )
-
-
-def _verify(table: Table, query: Query, random: np.random.Generator) -> Table:
-    """Table with the larger of its errors so far and at fresh random inputs."""
-    mean, std = _errors(table, query, random.uniform(size=(CHECKS, len(table.nodes))))
-    return replace(
-        table, mean_error=max(table.mean_error, mean), std_error=max(table.std_error, std)
     )
 
 
