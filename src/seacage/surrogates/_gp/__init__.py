@@ -10,7 +10,6 @@ from seacage.surrogates._gp._gaussian_process import (
     fit_process,
     processes_from_arrays,
     processes_to_arrays,
-    select_likelihood_outputs,
 )
 from seacage.surrogates._gp._kernels import (
     VARIANCE_PRIOR,
@@ -56,5 +55,4 @@ __all__ = [
     "processes_from_arrays",
     "processes_to_arrays",
     "register_kernels",
-    "select_likelihood_outputs",
 ]

@@ -82,12 +82,10 @@ class GaussianProcess:
         x = check_inputs(x, what="GaussianProcess.fit")
         shape = "(rows,)" if np.ndim(y) == 1 else "(rows, outputs)"
         y = check_outputs(y, what="GaussianProcess.fit", rows=len(x), shape=shape)
-        table = y.reshape(len(y), -1)
         fitted = fit_process(
             StationaryKernel(self.kernel),
             x,
-            table,
-            likelihood_outputs=select_likelihood_outputs(table, unlike=self.noise == "per-output"),
+            y.reshape(len(y), -1),
             noise=self.noise,
             ensemble=self.ensemble,
             restarts=self.restarts,
@@ -264,7 +262,8 @@ class FittedGaussianProcess:
 
     def output(self, index: int) -> "FittedGaussianProcess":
         """One output as a model that answers (row,); it shares the factor."""
-        if not 0 <= index < (outputs := len(self.centre)):
+        outputs = len(self.centre)
+        if not 0 <= index < outputs:
             raise InputError(f"output {index} does not exist; this model has {outputs}, from 0.")
         return self.combined(np.eye(outputs)[index])
 
@@ -443,13 +442,13 @@ def fit_process(
     x: Float[np.ndarray, "n feature"],
     y: Float[np.ndarray, "n output"],
     *,
-    # Outputs of the likelihood that is maximised, of unit variance all in all
-    likelihood_outputs: Float[np.ndarray, "n some"],
+    # Outputs of the likelihood that is maximised, of unit variance all in all; None for those
+    # above in their spreads, all of the same importance
+    likelihood_outputs: Float[np.ndarray, "n some"] | None = None,
     # As for ``GaussianProcess``
     noise: NoiseName = "white",
     ensemble: Ensemble = "never",
-    # What each output is expected to rise by per unit of each feature; None for nothing. The
-    # outputs of the likelihood are without it.
+    # What each output is expected to rise by per unit of each feature; None for nothing
     slope: Float[np.ndarray, " feature"] | None = None,
     # Of the search, as ``most_probable`` takes them
     restarts: int,
@@ -459,15 +458,22 @@ def fit_process(
     """Fit the hyperparameters, then condition on the outputs."""
     inputs, outputs = Scaling.of(x), Scaling.of(y)
     standardised = inputs.standardise(x)
-    line = np.zeros((x.shape[1], y.shape[1]))
-    if slope is not None:
-        line += (slope * inputs.unit)[:, None]
+    slope = np.zeros(x.shape[1]) if slope is None else slope
+    line = np.tile((slope * inputs.unit)[:, None], y.shape[1])
     rest = y - outputs.centre - standardised @ line
-    scatter = noise_named(noise, standardised, outputs=likelihood_outputs.shape[1])
-    evidence = Evidence.of(kernel, scatter, standardised, likelihood_outputs)
+    likely = likelihood_outputs
+    if likely is None:
+        # In spreads of the outputs themselves, whatever the slope leaves of them, as the priors are
+        left = y - x @ slope[:, None]
+        likely = (left - left.mean(axis=0)) / outputs.unit
+        # With noise of its own to learn none can stand for others
+        if noise != "per-output" and y.shape[1] > MANY_OUTPUTS:
+            likely = condense(likely)
+    scatter = noise_named(noise, standardised, outputs=likely.shape[1])
+    evidence = Evidence.of(kernel, scatter, standardised, likely)
     mode = most_probable(evidence, restarts=restarts, seed=seed, most=most)
     hyperparameters, wider = mode.log_parameters[None], 1.0
-    few = likelihood_outputs.size <= FEW
+    few = likely.size <= FEW
     if ensemble == "always" or (ensemble == "auto" and few):
         hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
     # noise factors are of all points, or there are none
@@ -515,17 +521,6 @@ def average(
             [processes[one].amplitude / amplitude * processes[one].factor for one in order]
         ),
     )
-
-
-def select_likelihood_outputs(
-    y: Float[np.ndarray, "n output"],
-    *,
-    # Each output has noise of its own to learn, so that none can stand for others
-    unlike: bool = False,
-) -> Float[np.ndarray, "n some"]:
-    """Standardised outputs of the likelihood, all of the same importance."""
-    standardised = Scaling.of(y).standardise(y)
-    return standardised if unlike or y.shape[1] <= MANY_OUTPUTS else condense(standardised)
 
 
 def condense(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n some"]:

@@ -104,7 +104,6 @@ def fit_tables(
             MEAN if name == "mean" else WAVE_EFFECT,
             x,
             table,
-            likelihood_outputs=gp.select_likelihood_outputs(table),
             restarts=restarts,
             seed=seed,
             most=MOST_POINTS,

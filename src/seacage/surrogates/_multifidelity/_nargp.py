@@ -117,7 +117,16 @@ class AbstractMultifidelity(ABC):
                 kernels = links = self.links(_lengths_below(fitted, x), alike=alike)
                 inputs, slope = np.column_stack([x, below]), np.append(slope, links[0].ratio)
             added = [
-                self._process(kernel, inputs, y[:, None], slope=slope, seed=seeds[index])
+                _gp.fit_process(
+                    kernel,
+                    inputs,
+                    y[:, None],
+                    noise=self.noise,
+                    ensemble=self.ensemble,
+                    slope=slope,
+                    restarts=self.restarts,
+                    seed=seeds[index],
+                )
                 for kernel in kernels
             ]
             models = [replace(fitted, own=(*fitted.own, one)) for one in added]
@@ -129,29 +138,6 @@ class AbstractMultifidelity(ABC):
                 together = _gp.average(added, pseudo_bma(density, out.independent))
                 fitted = fitted._replaced(fitted.levels, together)  # noqa: SLF001
         return fitted
-
-    def _process(
-        self,
-        kernel: _gp.AbstractKernel,
-        x: NFeature,
-        y: Float[np.ndarray, "n 1"],
-        *,
-        slope: PerFeature,
-        seed: int,
-    ) -> _gp.FittedGaussianProcess:
-        rest = y - x @ slope[:, None]
-        return _gp.fit_process(
-            kernel,
-            x,
-            y,
-            # In spreads of the level itself, whatever is left of it, as the priors are.
-            likelihood_outputs=(rest - rest.mean(axis=0)) / Scaling.of(y).unit,
-            noise=self.noise,
-            ensemble=self.ensemble,
-            slope=slope,
-            restarts=self.restarts,
-            seed=seed,
-        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

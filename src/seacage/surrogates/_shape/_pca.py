@@ -227,7 +227,6 @@ class PcaGP:
                 _gp.StationaryKernel(self.kernel),
                 x,
                 score[:, None],
-                likelihood_outputs=_gp.select_likelihood_outputs(score[:, None]),
                 restarts=self.restarts,
                 seed=seed + mode,
             )
