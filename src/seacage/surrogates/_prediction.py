@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 
 from seacage.conventions import InputError, Rows
 
+RowRest = Float[np.ndarray, "row *rest"]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Prediction(Rows):
@@ -18,12 +20,10 @@ class Prediction(Rows):
     ``mean``, ``std``: of the same shape: (row,), (row, output) or (row, node, 3).
     """
 
-    mean: Float[np.ndarray, "row *rest"]
-    std: Float[np.ndarray, "row *rest"]
+    mean: RowRest
+    std: RowRest
 
-    def interval(
-        self, level: float
-    ) -> tuple[Float[np.ndarray, "row *rest"], Float[np.ndarray, "row *rest"]]:
+    def interval(self, level: float) -> tuple[RowRest, RowRest]:
         """Bounds that hold a share of a normal distribution, the same share beyond either."""
         half = self.std * NormalDist().inv_cdf(interval_ends(level)[1])
         return self.mean - half, self.mean + half

@@ -1,7 +1,7 @@
 """The whole shape of the net from a graph convolutional network."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from types import ModuleType
 from typing import ClassVar, Self
 
@@ -163,13 +163,7 @@ class GCN:
         )
 
     def _recipe(self) -> Recipe:
-        return recipe_of(
-            self.kind,
-            width=self.width,
-            epochs=self.epochs,
-            patience=self.patience,
-            learning_rate=self.learning_rate,
-        )
+        return recipe_of(self.kind, **{one.name: getattr(self, one.name) for one in fields(Recipe)})
 
     def _weight(self, graph: Graph) -> Float[np.ndarray, " node"]:
         weight = self.node_weight

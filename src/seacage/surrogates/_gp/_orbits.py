@@ -14,6 +14,7 @@ DISTINCT = 1e-6  # eigenvalues of different subspaces, at least
 # leaves an error of some 1e-6 of the variance there
 SINGLE_NOISE = 5e-5
 Part = tuple[Float[np.ndarray, "image _"], Cholesky]  # basis and factor
+Quotient = Int[np.ndarray, "image image"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -27,7 +28,7 @@ class Orbits:
     """
 
     # Number of the image that the second of a pair is as the first one sees it
-    quotient: Int[np.ndarray, "image image"]
+    quotient: Quotient
     parts: tuple[Part, ...]
     of_variance: tuple[Part, ...]  # the same, perhaps in single precision: its time goes by memory
 
@@ -36,7 +37,7 @@ class Orbits:
         cls,
         covariance: Float[np.ndarray, "point n"],  # of the points of the first image with all
         noise: float,
-        quotient: Int[np.ndarray, "image image"],
+        quotient: Quotient,
     ) -> Self:
         """Factorise; raises LinAlgError where a block is not positive definite."""
         images = covariance.reshape(len(covariance), len(quotient), -1)
@@ -92,9 +93,7 @@ class Orbits:
         return first[self.quotient].transpose(0, 3, 1, 2).reshape(images * points, -1)
 
 
-def irreducible_bases(
-    quotient: Int[np.ndarray, "image image"],
-) -> list[Float[np.ndarray, "image _"]]:
+def irreducible_bases(quotient: Quotient) -> list[Float[np.ndarray, "image _"]]:
     """Orthonormal bases of the irreducible subspaces of a group.
 
     They are the eigenspaces of a random symmetric matrix that commutes with the group: Murota,

@@ -39,7 +39,7 @@ class BatchedLinks:
     @classmethod
     def of(cls, members: Sequence[_gp.Posterior], *, most: int) -> Self:
         """Of members with one kernel; those with fewer points than the most get some at 0."""
-        points = np.stack([np.pad(one.x, ((0, most - len(one.x)), (0, 0))) for one in members])
+        points = np.stack([_pad(one.x, most) for one in members])
         log_parameters = np.stack([one.log_parameters for one in members])
 
         def covariance(leaf: _gp.AbstractKernel, own: np.ndarray) -> _gp.Leaf:
@@ -56,6 +56,10 @@ class BatchedLinks:
             covariance=kernel.combine(log_parameters, width, covariance),
             variance=kernel.combine(log_parameters, width, variance),
         )
+
+
+def _pad(values: Float[np.ndarray, "n _"], most: int) -> Float[np.ndarray, "most _"]:
+    return np.pad(values, ((0, most - len(values)), (0, 0)))
 
 
 def _nest(leaf: _gp.Columns, evaluate: Callable[[np.ndarray], _gp.Evaluation]) -> _gp.Leaf:
@@ -106,16 +110,13 @@ class BatchedLevels:
         share[owner, np.arange(len(members))] = [levels[level].share[k] for level, k in places]
         most = max(len(member.x) for member in members)
         alike = groupby(members, key=lambda member: member.kernel.name)
-        weights = np.zeros((len(members), most, 1))
-        for index, member in enumerate(members):
-            weights[index, : len(member.weights)] = member.weights
         return cls(
             levels=tuple(levels),
             members=members,
             owner=owner,
             share=share,
             links=tuple(BatchedLinks.of(list(group), most=most) for _, group in alike),
-            weights=weights,
+            weights=np.stack([_pad(member.weights, most) for member in members]),
             line=np.stack([level.line for level in levels])[owner],
             centre=np.stack([level.inputs.centre for level in levels])[owner, None],
             unit=np.stack([level.inputs.unit for level in levels])[owner, None],

@@ -117,12 +117,8 @@ class Box(AbstractRegion):
         return f"the table ({', '.join(limits)})"
 
     def to_settings(self) -> Settings:
-        return {
-            "kind": "box",
-            "lower": list(self.lower),
-            "upper": list(self.upper),
-            "closed": list(self.closed),
-        }
+        limits = {name: list(getattr(self, name)) for name in ("lower", "upper", "closed")}
+        return {"kind": "box", **limits}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
