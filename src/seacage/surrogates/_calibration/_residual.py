@@ -17,6 +17,7 @@ NOISE_SHARE = 0.3  # prior median of the noise's scale, as a share of the residu
 REACH = 4.0  # half-width of the search, in prior standard deviations
 SETTLED = 1e-3  # largest change of a weight at which the reweighting ends
 Series = Float[np.ndarray, " t"]
+Sizes = Float[np.ndarray, " 3"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -200,13 +201,11 @@ class _Filtered(NamedTuple):
         return Prediction(mean=mean, std=np.sqrt(np.maximum(self.variance - explained, 0.0)))
 
 
-def _search(
-    fitted: FittedResidual, centre: Float[np.ndarray, " 3"], spread: Float[np.ndarray, " 3"]
-) -> FittedResidual:
+def _search(fitted: FittedResidual, centre: Sizes, spread: Sizes) -> FittedResidual:
     """The most probable sizes and memory, the weights given."""
     from scipy.optimize import minimize
 
-    def with_sizes(offset: Float[np.ndarray, " 3"]) -> FittedResidual:
+    def with_sizes(offset: Sizes) -> FittedResidual:
         return replace(fitted, **_sizes(centre + spread * offset))
 
     now = np.log([fitted.sd, fitted.memory_s, fitted.noise_sd])
@@ -220,7 +219,7 @@ def _search(
     return with_sizes(end.x)
 
 
-def _sizes(logarithm: Float[np.ndarray, " 3"]) -> dict[str, float]:
+def _sizes(logarithm: Sizes) -> dict[str, float]:
     return dict(zip(("sd", "memory_s", "noise_sd"), np.exp(logarithm).tolist(), strict=True))
 
 

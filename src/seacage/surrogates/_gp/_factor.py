@@ -10,6 +10,10 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 
+NN = Float[np.ndarray, "n n"]
+RowN = Float[np.ndarray, "row n"]
+PerN = Float[np.ndarray, " n"]
+NOutput = Float[np.ndarray, "n output"]
 # Shares of each variance added to the diagonal, the first that gives a factor in float64
 JITTERS = (1e-9, 1e-8, 1e-7, 1e-6)
 
@@ -18,10 +22,10 @@ JITTERS = (1e-9, 1e-8, 1e-7, 1e-6)
 class Cholesky:
     """Of a covariance whose noise is the same for all outputs."""
 
-    lower: Float[np.ndarray, "n n"]  # triangular factor of the covariance with noise
+    lower: NN  # triangular factor of the covariance with noise
 
     @classmethod
-    def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " n"]) -> Self:
+    def of(cls, covariance: NN, noise: PerN) -> Self:
         """Factorise the covariance plus the noise of each case.
 
         Raises LinAlgError: it is not positive definite, even with the largest jitter.
@@ -36,25 +40,25 @@ class Cholesky:
                 continue
         raise LinAlgError("the covariance is not positive definite")
 
-    def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def solve(self, y: NOutput) -> NOutput:
         """Inverse times outputs."""
         from scipy.linalg import cho_solve
 
         # In C order, as they come back from a file: the same rounding in every prediction.
         return np.ascontiguousarray(cho_solve((self.lower, True), y, check_finite=False))
 
-    def observations(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def observations(self, weights: NOutput) -> NOutput:
         """Outputs whose inverse is the weights."""
         return self.lower @ (self.lower.T @ weights)
 
-    def variance_reduction(self, cross: Float[np.ndarray, "row n"]) -> Float[np.ndarray, "row 1"]:
+    def variance_reduction(self, cross: RowN) -> Float[np.ndarray, "row 1"]:
         """Of each row's variance, by the cases that it varies with."""
         # Called bare: for one row, looking at the arguments first would cost as much again.
         right = cross.T.astype(self.lower.dtype, copy=False)
         half = _trtrs(self.lower.dtype.char)(self.lower, right, lower=True)[0]
         return np.einsum("nr,nr->r", half, half)[:, None]
 
-    def inverse(self) -> Float[np.ndarray, "n n"]:
+    def inverse(self) -> NN:
         """Of the covariance with noise."""
         from scipy.linalg import get_lapack_funcs
 
@@ -99,15 +103,15 @@ class Spectrum:
     """Of a covariance under noise of another size for each output: one basis serves all."""
 
     # Eigenvectors (columns) and eigenvalues of the covariance
-    basis: Float[np.ndarray, "n n"]
-    value: Float[np.ndarray, " n"]
+    basis: NN
+    value: PerN
     noise: Float[np.ndarray, " output"]  # variance of each output's
     # Shares of the outputs' variance in the one answer that is a sum of them; None answers with
     # each output
     mixture: Float[np.ndarray, " output"] | None = None
 
     @classmethod
-    def of(cls, covariance: Float[np.ndarray, "n n"], noise: Float[np.ndarray, " output"]) -> Self:
+    def of(cls, covariance: NN, noise: Float[np.ndarray, " output"]) -> Self:
         """Decompose the covariance."""
         from scipy.linalg import eigh
 
@@ -116,28 +120,26 @@ class Spectrum:
         return cls(basis=basis, value=np.maximum(value, 0.0) + jitter, noise=noise)
 
     @property
-    def inverse_value(self) -> Float[np.ndarray, "n output"]:
+    def inverse_value(self) -> NOutput:
         """Eigenvalues of the inverse, for each answer."""
         inverse_value = 1.0 / (self.value[:, None] + self.noise)
         return inverse_value if self.mixture is None else inverse_value @ self.mixture[:, None]
 
-    def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def solve(self, y: NOutput) -> NOutput:
         """Inverse times outputs."""
         self._refuse_mixture()
         return self.basis @ ((self.basis.T @ y) * self.inverse_value)
 
-    def observations(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def observations(self, weights: NOutput) -> NOutput:
         """Outputs whose inverse is the weights."""
         self._refuse_mixture()
         return self.basis @ ((self.basis.T @ weights) / self.inverse_value)
 
-    def variance_reduction(
-        self, cross: Float[np.ndarray, "row n"]
-    ) -> Float[np.ndarray, "row output"]:
+    def variance_reduction(self, cross: RowN) -> Float[np.ndarray, "row output"]:
         """Of each row's variance, by the cases that it varies with."""
         return (cross @ self.basis) ** 2 @ self.inverse_value
 
-    def precision(self) -> Float[np.ndarray, "n output"]:
+    def precision(self) -> NOutput:
         """Diagonal of the inverse."""
         self._refuse_mixture()
         return self.basis**2 @ self.inverse_value
@@ -157,9 +159,7 @@ class Spectrum:
             )
 
 
-def _lower(
-    covariance: Float[np.ndarray, "n n"], diagonal: Float[np.ndarray, " n"]
-) -> Float[np.ndarray, "n n"]:
+def _lower(covariance: NN, diagonal: PerN) -> NN:
     from scipy.linalg import cholesky
 
     whole = covariance.copy()

@@ -9,6 +9,7 @@ from jaxtyping import Float, Int
 
 from seacage.surrogates._gp._factor import Cholesky
 
+NOutput = Float[np.ndarray, "n output"]
 DISTINCT = 1e-6  # eigenvalues of different subspaces, at least
 # Noise over the variance of a point from which factors in single precision give variances. Rounding
 # leaves an error of some 1e-6 of the variance there
@@ -59,17 +60,15 @@ class Orbits:
             ),
         )
 
-    def solve(self, y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def solve(self, y: NOutput) -> NOutput:
         """Inverse times outputs."""
         return self._by_parts(Cholesky.solve, y)
 
-    def observations(self, weights: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n output"]:
+    def observations(self, weights: NOutput) -> NOutput:
         """Outputs whose inverse is the weights."""
         return self._by_parts(Cholesky.observations, weights)
 
-    def _by_parts(
-        self, work: Callable[[Cholesky, np.ndarray], np.ndarray], y: np.ndarray
-    ) -> Float[np.ndarray, "n output"]:
+    def _by_parts(self, work: Callable[[Cholesky, np.ndarray], np.ndarray], y: NOutput) -> NOutput:
         images = y.reshape(len(self.quotient), -1)
         total = np.zeros_like(images)
         for basis, factor in self.parts:

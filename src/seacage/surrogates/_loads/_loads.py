@@ -10,6 +10,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.conventions import Rows
 from seacage.surrogates._prediction import Prediction, interval_ends
 
+CaseLine = Float[np.ndarray, "case line"]
 EULER = 0.5772156649015329  # mean of a standard Gumbel variable
 HALVINGS = 40  # of the bracket of a quantile
 # Of the quadrature over a logarithm's normal distribution
@@ -34,15 +35,15 @@ class LoadCases(Rows):
         T-N curve [N].
     """
 
-    mean: Float[np.ndarray, "case line"]
-    std: Float[np.ndarray, "case line"]
-    most_probable: Float[np.ndarray, "case line"]
-    expected: Float[np.ndarray, "case line"]
-    largest: Float[np.ndarray, "case line"]
-    damage_equivalent: Float[np.ndarray, "case line"]
+    mean: CaseLine
+    std: CaseLine
+    most_probable: CaseLine
+    expected: CaseLine
+    largest: CaseLine
+    damage_equivalent: CaseLine
 
     @property
-    def above_mean(self) -> Float[np.ndarray, "case line"]:
+    def above_mean(self) -> CaseLine:
         """Expected largest tension of three hours above the mean [N]."""
         largest = np.where(np.isfinite(self.expected), self.expected, self.largest)
         return np.maximum(largest - self.mean, 0.0)
@@ -69,29 +70,27 @@ class LoadPrediction(Rows):
         Taken from the sum; no load is below its base [N].
     """
 
-    base: Float[np.ndarray, "case line"]
-    size: Float[np.ndarray, "case line"]
-    log_std: Float[np.ndarray, "case line"]
-    gumbel: Float[np.ndarray, "case line"]
+    base: CaseLine
+    size: CaseLine
+    log_std: CaseLine
+    gumbel: CaseLine
     offset: float
 
     @property
-    def mean(self) -> Float[np.ndarray, "case line"]:
+    def mean(self) -> CaseLine:
         """Expected load [N]."""
         known = np.nan_to_num(self.log_std)
         return self._load(self.size * np.exp(0.5 * known**2))
 
     @property
-    def std(self) -> Float[np.ndarray, "case line"]:
+    def std(self) -> CaseLine:
         """Standard deviation of the load [N]."""
         square = np.expm1(self.log_std**2)
         scatter = self.gumbel**2 * math.pi**2 / 6.0
         size = self.size * np.exp(0.5 * self.log_std**2)
         return size * np.sqrt(square + scatter * (1.0 + square))
 
-    def interval(
-        self, level: float
-    ) -> tuple[Float[np.ndarray, "case line"], Float[np.ndarray, "case line"]]:
+    def interval(self, level: float) -> tuple[CaseLine, CaseLine]:
         """Bounds that hold a share of the loads, the same share beyond either [N]."""
         lower, upper = (self._quantile(end) for end in interval_ends(level))
         return lower, upper
@@ -144,10 +143,10 @@ class LoadPrediction(Rows):
         moved = np.where(rows[:, None], np.subtract(*sizes), 0.0)
         return replace(self, log_std=np.hypot(self.log_std, moved))
 
-    def _load(self, above: Float[np.ndarray, "case line"]) -> Float[np.ndarray, "case line"]:
+    def _load(self, above: CaseLine) -> CaseLine:
         return self.base + np.maximum(above - self.offset, 0.0)
 
-    def _quantile(self, share: float) -> Float[np.ndarray, "case line"]:
+    def _quantile(self, share: float) -> CaseLine:
         """By halving a bracket of the factor on ``size``, at all cases and lines at once."""
         widest = np.abs(NODES).max() * np.nan_to_num(self.log_std)
         most = np.exp(widest) * (1.0 + 40.0 * self.gumbel) + 1e-9
@@ -159,7 +158,7 @@ class LoadPrediction(Rows):
         factor = np.where(np.isfinite(self.log_std), 0.5 * (least + most), np.nan)
         return self._load(self.size * factor)
 
-    def _share_below(self, factor: Float[np.ndarray, "case line"]) -> np.ndarray:
+    def _share_below(self, factor: CaseLine) -> np.ndarray:
         from scipy.special import ndtr
 
         with np.errstate(divide="ignore", over="ignore"):
@@ -194,7 +193,7 @@ class Loads(Rows):
     std: LoadPrediction
     maximum_3h: LoadPrediction
     damage_equivalent: LoadPrediction
-    damage_per_year: Float[np.ndarray, "case line"] | None = None
+    damage_per_year: CaseLine | None = None
 
     def known(self, rows: Bool[np.ndarray, " case"]) -> Self:
         """The same with NaN in all other rows."""

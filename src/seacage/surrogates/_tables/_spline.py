@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 FEWEST = 4  # nodes of an axis: four fix a cubic
+PerRow = Float[np.ndarray, " row"]
 CHUNK = 2**13  # rows weighed at once: their weights stay in a core's own cache
 
 
@@ -94,9 +95,7 @@ def coefficient_counts(shape: Sequence[int], periodic: Sequence[bool]) -> list[i
     return [count + 2 + closed for count, closed in zip(shape, periodic, strict=True)]
 
 
-def _pieces(
-    place: Float[np.ndarray, " row"], cells: int
-) -> tuple[list[Float[np.ndarray, " row"]], Int[np.ndarray, " row"]]:
+def _pieces(place: PerRow, cells: int) -> tuple[list[PerRow], Int[np.ndarray, " row"]]:
     """Weights of the four B-splines that reach each place, and the first one's index."""
     across = place * cells
     cell = np.minimum(across.astype(np.int32), np.int32(cells - 1))

@@ -23,6 +23,7 @@ GROWTH = (1.25, 3.0)  # least and most that an axis grows from one round to the 
 ROUNDING = 1e-9
 _PRECISION = ("tolerance", "std_tolerance", "mean_error", "std_error")  # as saved
 
+RowAxis = Float[np.ndarray, "row axis"]
 # Answers of a model without and with noise; twice the same one where noise is not asked for
 Query = Callable[[Float[np.ndarray, "row feature"]], tuple[Prediction, Prediction]]
 
@@ -236,9 +237,7 @@ def _tabulate(
     )
 
 
-def _errors(
-    table: Table, query: Query, place: Float[np.ndarray, "row axis"]
-) -> tuple[float, float]:
+def _errors(table: Table, query: Query, place: RowAxis) -> tuple[float, float]:
     x = table.region.inputs(place)
     quiet, noisy = query(x)
     own, own_noisy = table.predict(x), table.predict(x, noisy=table.has_noise)
