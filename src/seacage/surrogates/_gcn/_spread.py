@@ -78,14 +78,14 @@ class Spread:
     ) -> Float[np.ndarray, "row node 3"]:
         """At standardised features [m]."""
         around = np.sqrt(_nearest_mean(x, self.held_out, self.size**2))
-        grown = np.maximum(1.0, _nearest(x, self.train) / self._reach)
+        grown = np.maximum(1.0, _distances(x, self.train).min(axis=1) / self._reach)
         kept = grown[:, None, None] ** 2 - (0.0 if noisy else self.noise)
         return around[:, None, None] * self.miss * np.sqrt(kept)
 
     @cached_property
     def _reach(self) -> float:
         """Largest distance of a held-out case from its nearest training case."""
-        return max(1e-6, float(_nearest(self.held_out, self.train).max()))
+        return max(1e-6, float(_distances(self.held_out, self.train).min(axis=1).max()))
 
     def to_arrays(self) -> Arrays:
         """By the names of its parts."""
@@ -120,10 +120,6 @@ def _distances(x: RowFeature, cases: CaseFeature) -> Float[np.ndarray, "row case
     from scipy.spatial.distance import cdist
 
     return cdist(x, cases)
-
-
-def _nearest(x: RowFeature, cases: CaseFeature) -> PerRow:
-    return _distances(x, cases).min(axis=1)
 
 
 def _nearest_mean(

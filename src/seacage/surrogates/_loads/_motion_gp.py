@@ -65,10 +65,9 @@ class FittedMotionGP:
         values, vectors = np.linalg.eigh((table - centre).T @ (table - centre))
         left_out = np.cumsum(np.maximum(values, 0.0)) / values.sum()
         mode = vectors[:, left_out > LEFT_OUT].T[::-1]
-        fitted = fit_tables(
-            rows, {"motion": (table - centre) @ mode.T}, restarts=restarts, seed=seed
-        )
-        return cls(process=fitted["motion"], centre=centre, mode=mode, offset=offset)
+        coefficients = {"process": (table - centre) @ mode.T}
+        processes = fit_tables(rows, coefficients, restarts=restarts, seed=seed)
+        return cls(**processes, centre=centre, mode=mode, offset=offset)
 
     def mean(
         self, x: Float[np.ndarray, "row feature"], *, hs: Float[np.ndarray, " row"]
