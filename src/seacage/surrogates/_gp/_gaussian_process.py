@@ -442,8 +442,8 @@ def fit_process(
     x: Float[np.ndarray, "n feature"],
     y: Float[np.ndarray, "n output"],
     *,
-    # Outputs of the likelihood that is maximised, of unit variance all in all; None for those
-    # above in their spreads, all of the same importance
+    # Outputs of the likelihood that is maximised, of unit variance all in all; None for ``y`` in
+    # its spreads, so that all outputs are of the same importance
     likelihood_outputs: Float[np.ndarray, "n some"] | None = None,
     # As for ``GaussianProcess``
     noise: NoiseName = "white",

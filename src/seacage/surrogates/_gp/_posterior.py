@@ -226,9 +226,9 @@ class Posterior(Process):
         all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
         noise_factor = np.append(self.noise_factor, new_factor)
         if isinstance(self.factor, Cholesky):
-            noise = self.noise.with_pullback(self.log_noise, x)[0] * new_factor
-            corner = self.kernel.covariance(self.log_parameters, x, x)
             with suppress(LinAlgError):  # otherwise the whole has a larger jitter
+                noise = self.noise.with_pullback(self.log_noise, x)[0] * new_factor
+                corner = self.kernel.covariance(self.log_parameters, x, x)
                 factor = self.factor.extended(self.cross(x), corner, noise)
                 return self._posterior(all_x, noise_factor, factor.solve(all_y), factor)
         return self.condition(all_x, all_y, noise_factor=noise_factor)
