@@ -49,6 +49,9 @@ class HeldBend(_gp.AbstractKernel):
     def prior(self, width: int) -> _gp.Prior:
         return FREE.prior(width)
 
+    def size(self, width: int) -> int:
+        return FREE.size(width)
+
     def at(self, log_parameters: np.ndarray, z: np.ndarray) -> _gp.Covariances:
         square = np.exp(2.0 * log_parameters)
         free_at, z_to_mean = FREE.at(log_parameters, z), _to_mean(z, square)
@@ -91,6 +94,9 @@ class LinearKernel(_gp.AbstractKernel):
 
     def prior(self, width: int) -> _gp.Prior:  # noqa: ARG002
         return _gp.Prior.of(self.variance)
+
+    def size(self, width: int) -> int:  # noqa: ARG002
+        return 1
 
     def at(self, log_parameters: np.ndarray, z: np.ndarray) -> _gp.Covariances:
         variance = np.exp(log_parameters)[..., None]
