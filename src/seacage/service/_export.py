@@ -173,9 +173,9 @@ def _columns(replayed: Replayed) -> Iterator[tuple[str, Column]]:
     yield "shape_interval_reason", [interval_reason(known=answer.shape_level > 1)] * len(buoy)
     bottom = replayed.cage.bottom_node
     # The higher end is the less deep; no net hangs above the surface.
+    low, high = answer.node_interval()
     lower, mean, upper = (
-        np.maximum(-one[:, bottom, 2], 0.0)
-        for one in (answer.node_interval()[1], answer.node_position, answer.node_interval()[0])
+        np.maximum(-one[:, bottom, 2], 0.0) for one in (high, answer.node_position, low)
     )
     yield from _interval_columns("shape_bottom_depth", "m", mean, lower, upper)
     yield "shape_largest_sigma_m", _without_nan(answer.node_std.max(axis=(1, 2)))
