@@ -98,9 +98,9 @@ class Answer:
     sensor: Prediction
     sensor_low: Prediction
     sensor_level: Int[np.ndarray, " sensor"]
-    node_position: Float[np.ndarray, "case node 3"]
+    node_position: PerNode
     node_sigma: Float[np.ndarray, "case node"]
-    node_std: Float[np.ndarray, "case node 3"]
+    node_std: PerNode
     shape_level: int
     volume_fraction: Float[np.ndarray, " case"]
     volume_std: Float[np.ndarray, " case"]

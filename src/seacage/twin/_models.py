@@ -300,12 +300,15 @@ class Models:
 
         A reading has the instrument's noise; the tension of a shackle's bridle has none.
         """
-        bridle_low, shape = self.bridles.predict(x), self.shape.predict(x)
-        nodes = [one.node for one in self.cage.depth_sensors]
+        bridle_low = self.bridles.predict(x)
+        nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
         lines = [one.bridle for one in self.cage.shackles]
+        # Where the net has level 2, the sensors' nodes are enough of its level 1.
+        shape = self.shape.predict_nodes(x, nodes) if self.net else self.shape.predict(x)
+        sensed = slice(None) if self.net else nodes
         sensor_low = Prediction(
-            mean=np.hstack([-shape.mean[:, nodes, 2], bridle_low.mean[:, lines]]),
-            std=np.hstack([shape.std[:, nodes, 2], bridle_low.std[:, lines]]),
+            mean=np.hstack([-shape.mean[:, sensed, 2], bridle_low.mean[:, lines]]),
+            std=np.hstack([shape.std[:, sensed, 2], bridle_low.std[:, lines]]),
         )
         bridle, sensor = deepcopy((bridle_low, sensor_low))
         if self.relative_discrepancy is not None:

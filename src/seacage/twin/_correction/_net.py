@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.surrogates import FittedShapeGP, Prediction
+from seacage.twin._answer import PerNode
 from seacage.twin._metocean import Input, Metocean
 
 LEAST_SENSORS = 2  # depth sensors with a calibrated level 2: one may be off in its own way
@@ -26,8 +27,6 @@ EXPECTED, EXPECTED_SD, OF_DEPTH = 1.5, 0.2, (0.2, 0.5)
 # that is lost, and of the whole [-]
 ALONG, ACROSS, UPWARDS, OF_VOLUME = (0.4, 1.5), (0.3, 1.0), (0.4, 0.3), (0.5, 0.04)
 SHARED = 0.3  # of a displacement, the share that is the mean of all nodes and not the node's own
-
-PerNode = Float[np.ndarray, "case node 3"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
