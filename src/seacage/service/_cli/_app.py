@@ -7,6 +7,7 @@ import typer
 
 from seacage.service._cli import (
     _archive,
+    _backup,
     _campaign,
     _config,
     _doctor,
@@ -82,6 +83,8 @@ app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_archive.group, name="archive")
 app.add_typer(_config.group, name="config")
+app.command()(_backup.backup)
+app.command()(_backup.restore)
 app.command()(_doctor.doctor)
 
 

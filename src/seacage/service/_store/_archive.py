@@ -112,6 +112,17 @@ class Archive:
                     if left.name not in named:
                         yield str(left), f"{left} is named by no manifest; a write was cut off."
 
+    def files(self) -> Iterator[Path]:
+        """Each manifest and the files that it names; a stream's do not change until the next's."""
+        for cage in self.cages():
+            for stream in self.streams(cage):
+                folder = self._folder(cage, stream)
+                with _lock(folder):
+                    manifest = self._manifest(folder)
+                    if manifest:
+                        yield folder / _MANIFEST
+                    yield from (folder / entry["file"] for entry in manifest.values())
+
     def _fault(self, folder: Path, stream: str, day: date, entry: Mapping[str, Any]) -> str | None:
         try:
             count = len(self._read(folder, stream, day, entry))

@@ -36,6 +36,9 @@ SELECT name FROM sqlite_schema s WHERE type = 'table' AND NOT EXISTS (
     SELECT 1 FROM pragma_table_info(s.name) WHERE name = 'crc'
 )"""
 
+# What lies beside a file, itself among them: SQLite's log and index, the lock and the room kept
+SIDE_FILES = ("", "-wal", "-shm", "-lock", "-reserve")
+
 _DAMAGED = {sqlite3.SQLITE_CORRUPT, sqlite3.SQLITE_NOTADB}
 
 _FULL = {
@@ -198,6 +201,37 @@ def sqlite_look(path: Path) -> Generator[_session.AbstractSession]:
         _complete(connection)
         connection.execute("BEGIN")
         yield SqliteSession(connection, Damage())
+
+
+def copy_database(path: Path, to: Path) -> None:
+    """Copy one moment of a file that another process may be writing.
+
+    Raises StoreError: it cannot be read, or is damaged.
+    """
+    with (
+        _translate_errors(path, "cannot be copied"),
+        closing(_reading(path)) as source,
+        closing(sqlite3.connect(to)) as copy,
+    ):
+        source.backup(copy)
+        copy.execute("PRAGMA journal_mode = DELETE")  # one file, without a log beside it
+        found = copy.execute("PRAGMA quick_check(1)").fetchone()[0]
+    if found != "ok":
+        raise _session.DamageError(
+            f"{path} is damaged ({found}). Start the service, which saves what is intact, and copy "
+            "it then."
+        )
+
+
+def is_served(path: Path) -> bool:
+    """Whether a process serves from a file."""
+    lock = path.with_name(path.name + "-lock")
+    if not lock.exists():
+        return False
+    claim = _lock_file(lock)
+    if claim is not None:
+        claim.close()
+    return claim is None
 
 
 def _complete(connection: sqlite3.Connection) -> None:
