@@ -11,13 +11,11 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, towards
 from seacage.figures._gif import Gif
 from seacage.figures._style import FAINT, INK, MULTI, MUTED, caption, style
+from seacage.figures._types import Axes, Collection, Figure
 from seacage.ocean import SeaState, Waves, surface_elevation
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import Collection
     from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
 _SIZE = (7.2, 4.25)  # of the picture [inch]; its width in pixels is the caller's
@@ -214,7 +212,7 @@ class _Eye:
 class _Water:
     """The water's surface as a band from a far to a near crest, and the water below it."""
 
-    def __init__(self, axes: "Axes", eye: _Eye, motion: Motion, reach: float) -> None:
+    def __init__(self, axes: Axes, eye: _Eye, motion: Motion, reach: float) -> None:
         self._eye, self._motion = eye, motion
         along = np.linspace(-reach - 1.0, reach + 1.0, 96)
         rows = [reach * far for far in (0.8, 0.0, -0.8)]
@@ -241,7 +239,7 @@ class _Water:
         self._body.set_xy(np.vstack([near, ends]))
 
 
-def _frame_axes(axes: "Axes", reach: float, bottom: float) -> None:
+def _frame_axes(axes: Axes, reach: float, bottom: float) -> None:
     """Metres as wide as high, the deepest point at rest just inside."""
     axes.set_axis_off()
     high = 2.0 * reach * (0.73 * _SIZE[1]) / _SIZE[0]
@@ -258,7 +256,7 @@ def _patches(cage: Cage) -> Int[np.ndarray, "patch corner"]:
 
 
 def _colour(
-    axes: "Axes", artists: "Collection", colours: tuple[str, ...], levels: int, largest: float
+    axes: Axes, artists: Collection, colours: tuple[str, ...], levels: int, largest: float
 ) -> None:
     """Add artists that take one of so many colours, from zero to the largest value."""
     from matplotlib.colors import BoundaryNorm
@@ -277,7 +275,7 @@ def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
     return LinearSegmentedColormap.from_list("seacage", list(colours), N=levels)
 
 
-def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
+def _draw_frame(axes: Axes, cage: Cage, eye: _Eye) -> None:
     corner = eye.project(cage.corner_position)
     for side in range(len(corner)):
         ends = corner[[side, (side + 1) % len(corner)]]
@@ -285,7 +283,7 @@ def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4.5, zorder=4.5)
 
 
-def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
+def _write_head(axes: Axes, cage: Cage, motion: Motion) -> None:
     sea = motion.sea
     waves = f"waves Hs {sea.hs:.3g} m, Tp {sea.peak_period:.3g} s" if sea.hs else "no waves"
     about = f"current {sea.current_speed:.3g} m/s to the right, {waves}, {motion.origin}"
@@ -293,7 +291,7 @@ def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
     caption(axes, about, (0.988, 0.985), va="top", ha="right", color=MUTED)
 
 
-def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
+def _write_legend(axes: Axes, net: Collection, lines: Collection) -> None:
     """Two slim colour bars in the corners of the deep water."""
     for left, artist, unit, label, scale in (
         (0.03, net, "m", "Net: displacement from rest", 1.0),
@@ -309,7 +307,7 @@ def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
         caption(bar, f"{most:.0f} {unit}", (1.0, -0.5), ha="right", va="top", fontsize=7.5)
 
 
-def _trace(figure: "Figure", cage: Cage, motion: Motion, bridle: int) -> "tuple[Line2D, Line2D]":
+def _trace(figure: Figure, cage: Cage, motion: Motion, bridle: int) -> "tuple[Line2D, Line2D]":
     """One bridle's tension: all of it faintly, what has been strongly, now as a dot."""
     axes = figure.add_axes((0.075, 0.085, 0.905, 0.15))
     since = motion.time - motion.time[0]

@@ -2,17 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures import _style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 _WIDTH = 10.0  # of a whole page [inch]
 
@@ -35,7 +31,7 @@ def sector_figure(
     low: Float[np.ndarray, "sensor sector"],
     *,
     origin: Origin,  # of the truth
-) -> "Figure":
+) -> Figure:
     """Mean response of the truth and of the low fidelity by direction of the current."""
     place = np.arange(len(sectors))
     with _style.style():
@@ -52,7 +48,7 @@ def sector_figure(
 
 def left_figure(
     sensors: Sequence[str], left: Float[np.ndarray, " sensor"], *, least: float, origin: Origin
-) -> "Figure":
+) -> Figure:
     """Share of the low fidelity's error that the best rescaling leaves, one bar each.
 
     ``sensors``: their names.
@@ -88,7 +84,7 @@ def gain_figure(
     real: Float[np.ndarray, "row 3"],
     *,
     origin: Origin,  # of the readings
-) -> "Figure":
+) -> Figure:
     """Gains with their intervals, where there is nothing to gain and where there is."""
     place = np.arange(len(names))[::-1]
     with _style.style():
@@ -121,7 +117,7 @@ def fouling_figure(
     met_growth: Float[np.ndarray, " bin"],
     met_gap: Float[np.ndarray, "bin sensor"],
     origin: Origin,  # of the truth
-) -> "Figure":
+) -> Figure:
     """Truth less low fidelity while the net grows."""
     from matplotlib import colormaps
 
@@ -141,12 +137,12 @@ def fouling_figure(
     return figure
 
 
-def _name_panel(axes: "Axes", panel: Panel) -> None:
+def _name_panel(axes: Axes, panel: Panel) -> None:
     axes.set_title(f"{panel.sensor}: {panel.quantity.lower()} [{panel.unit}]")
     axes.tick_params(labelbottom=True)
 
 
-def _explain(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None:
+def _explain(figure: Figure, axes: Axes, title: str, origin: Origin) -> None:
     """One line over all panels: what is drawn, in which colours, and where it comes from."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper right", ncols=len(handles))

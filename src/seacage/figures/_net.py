@@ -1,6 +1,6 @@
 """The net in side and top view, coloured by how far each panel has moved."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
@@ -8,12 +8,8 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import Origin, towards
 from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._types import Axes, Figure, PolyCollection
 from seacage.ocean import SeaState
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
 
 Node3 = Float[np.ndarray, "node 3"]
 PerBridle = Float[np.ndarray, " bridle"]
@@ -29,7 +25,7 @@ def net_figure(
     bridle_tension: PerBridle | None = None,
     sea: SeaState | None = None,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """Side and top view of one shape of the net, its bridles, frame and sensors.
 
     The side view looks across the current, which goes to the right; the top view has north up.
@@ -75,7 +71,7 @@ def net_figure(
     return figure
 
 
-def draw_ghost(axes: "Axes", cage: Cage, rest: Node3, view: View) -> None:
+def draw_ghost(axes: Axes, cage: Cage, rest: Node3, view: View) -> None:
     """The rest shape as a faint net, so that the eye sees how far the net has gone."""
     from matplotlib.collections import LineCollection
 
@@ -84,7 +80,7 @@ def draw_ghost(axes: "Axes", cage: Cage, rest: Node3, view: View) -> None:
 
 
 def draw_net(
-    axes: "Axes",
+    axes: Axes,
     cage: Cage,
     position: Node3,
     moved: Float[np.ndarray, " node"],
@@ -92,7 +88,7 @@ def draw_net(
     view: View,
     toward: Float[np.ndarray, "3"],
     largest: float | None = None,
-) -> "ScalarMappable":
+) -> PolyCollection:
     """Panels from the farthest to the nearest, so that near twines cover far ones.
 
     Colours run up to the largest displacement [m], this shape's own if None.
@@ -117,7 +113,7 @@ def draw_net(
     return patches
 
 
-def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
+def draw_bridles(axes: Axes, cage: Cage, position: Node3, view: View) -> None:
     """From the frame's corners, where they are in still water, to the collar."""
     from matplotlib.collections import LineCollection
 
@@ -125,14 +121,14 @@ def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     axes.add_collection(LineCollection(list(ends @ view.T), colors=LOW, linewidths=0.9, zorder=3))
 
 
-def draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
+def draw_frame(axes: Axes, cage: Cage, view: View) -> None:
     corner = cage.corner_position @ view.T
     frame = np.vstack([corner, corner[:1]])
     axes.plot(frame[:, 0], frame[:, 1], color=MUTED, lw=0.9, ls=(0, (4, 2)), zorder=1)
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4, zorder=4)
 
 
-def draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
+def draw_sensors(axes: Axes, cage: Cage, position: Node3, view: View) -> None:
     """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
     depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T
     shackle = position[cage.bridle_nodes[[entry.bridle for entry in cage.shackles]]] @ view.T
@@ -141,7 +137,7 @@ def draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     axes.plot(shackle[:, 0], shackle[:, 1], "D", color=MULTI, ms=5.5, label="Load shackle", **look)
 
 
-def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
+def _finish_side(axes: Axes, sea: SeaState | None) -> None:
     axes.axhline(0.0, color="#7fb2dd", lw=0.8, zorder=0)
     axes.set_xlabel("Along the current [m]")
     axes.set_ylabel("z [m]")
@@ -153,7 +149,7 @@ def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
 
 
 def _finish_top(
-    axes: "Axes", cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
+    axes: Axes, cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
 ) -> None:
     axes.set_xlabel("x, east [m]")
     axes.set_ylabel("y, north [m]")

@@ -1,18 +1,13 @@
 """A stream with what its quality checks flagged."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import Flag
 from seacage.figures._comparison import date_axis
 from seacage.figures._style import FIT, SENSOR, blank_figure, head, style
+from seacage.figures._types import Axes, Figure
 from seacage.records import KEYS, Record
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _SUSPECT = "#b8860b"
 _MISSING = "#2f74b5"
@@ -28,7 +23,7 @@ _LABELS = {
 _DRAWN = 4000  # points of the line, at most about; of each kind of mark, half as many
 
 
-def quality_figure(record: Record) -> "Figure":
+def quality_figure(record: Record) -> Figure:
     """Every quantity over time: what came, and where it is suspect, failed or missing.
 
     The line breaks where the stream was silent for ten times its usual step. A failed value
@@ -46,7 +41,7 @@ def quality_figure(record: Record) -> "Figure":
     return figure
 
 
-def _panel(axes: "Axes", record: Record, key: str) -> None:
+def _panel(axes: Axes, record: Record, key: str) -> None:
     values, flags = record.values[key], record.flags[key]
     kept = record.usable(key)
     low, high = _limits(values[kept] if np.any(kept) else values[np.isfinite(values)], key)

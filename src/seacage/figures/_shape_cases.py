@@ -1,17 +1,13 @@
 """How wrong whole shapes are along each axis, test case by test case: the paper's figure."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, note, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 MODEL_COLOURS = (LOW, MULTI, "#4f8a4c", "#7d5ba6", MUTED)
 _AXES = ("x, east", "y, north", "z, up")
@@ -23,7 +19,7 @@ def shape_cases_figure(
     errors: Mapping[str, Float[np.ndarray, "case 3"]],
     *,
     origin: Origin = Origin.COMPUTED,  # of the shapes that the models were compared with
-) -> "Figure":
+) -> Figure:
     """Mean absolute node error along x, y and z of each test case, and over all of them.
 
     The line at 1 m is the distance that the paper would have an ROV keep from the net. The last
@@ -57,7 +53,7 @@ def shape_cases_figure(
 
 
 def _summary(
-    axes: "Axes", errors: Mapping[str, Float[np.ndarray, "case 3"]], *, least: float
+    axes: Axes, errors: Mapping[str, Float[np.ndarray, "case 3"]], *, least: float
 ) -> None:
     for number, (colour, (name, error)) in enumerate(
         zip(MODEL_COLOURS, errors.items(), strict=False)

@@ -1,17 +1,13 @@
 """How wrong whole shapes are, case by case."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError, Origin
 from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, note, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 _COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6", "#b08a1e", "#3a9aa3", "#8a5a44")
 ABREAST = 3  # names that fit between title and axes
@@ -26,7 +22,7 @@ def shape_error_figure(
     # hours of the same sea [m]
     floor: float | None = None,
     origin: Origin = Origin.COMPUTED,  # of the shapes that the models were compared with
-) -> "Figure":
+) -> Figure:
     """Mean absolute node error of each model in each held-out case, against the speed.
 
     The line at 1 m is the distance that the paper would have an ROV keep from the net.
@@ -56,6 +52,6 @@ def shape_error_figure(
     return figure
 
 
-def _mark(axes: "Axes", height: float, name: str, *, colour: str) -> None:
+def _mark(axes: Axes, height: float, name: str, *, colour: str) -> None:
     axes.axhline(height, color=colour, lw=1.0)
     note(axes, name, (0.0, height), (4, 3), xycoords=("axes fraction", "data"), color=colour)

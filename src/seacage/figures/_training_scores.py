@@ -2,17 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures._style import FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 _LOOKS = ((LOW, "o"), (MULTI, "D"), ("#4f8a4c", "s"), ("#7d5ba6", "^"), (SENSOR, "v"))
 _NOMINAL = 0.95
@@ -35,7 +31,7 @@ def training_scores_figure(
     ways: Mapping[str, TrainingScores],  # by name
     *,
     origin: Origin,  # of the readings
-) -> "Figure":
+) -> Figure:
     """Error, score and coverage of each sensor, one mark for each way of training."""
     place = np.arange(len(sensors))[::-1]
     with style():
@@ -65,7 +61,7 @@ def training_scores_figure(
     return figure
 
 
-def _finish(axes: "Axes", title: str, label: str, *, line: float = 1.0) -> None:
+def _finish(axes: Axes, title: str, label: str, *, line: float = 1.0) -> None:
     head(axes, title)
     axes.set_xlabel(label)
     axes.axvline(line, color=FIT if line < 1.0 else INK, lw=0.9, ls=(0, (5, 3)), zorder=0)

@@ -2,17 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, caption, head, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 _LOOKS = ((MULTI, "-"), (LOW, "--"), ("#4f8a4c", "-."), ("#7d5ba6", ":"))
 
@@ -53,7 +49,7 @@ def volume_figure(
     *,
     measured: Sequence[VolumeMark] = MEASURED_VOLUMES,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """Volume over that in still water against the current.
 
     Parameters
@@ -85,7 +81,7 @@ def volume_figure(
     return figure
 
 
-def _draw_mark(axes: "Axes", mark: VolumeMark) -> None:
+def _draw_mark(axes: Axes, mark: VolumeMark) -> None:
     place = (mark.current_speed, 100.0 * mark.fraction)
     axes.plot(*place, "D", color=FIT, mec="white", mew=0.9, ms=6.5, zorder=4)
     name, offset = mark.name, (-7, -1)
