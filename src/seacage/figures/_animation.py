@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, UInt8
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, towards
-from seacage.figures._gif import Gif
 from seacage.figures._style import FAINT, INK, MULTI, MUTED, caption, style
 from seacage.figures._types import Axes, Collection, Figure
 from seacage.ocean import SeaState, Waves, surface_elevation
@@ -182,6 +181,48 @@ class _Scene:
         self._now.set_data(since[-1:], tension[-1:])
         self._canvas.draw()
         return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
+
+
+class Gif:
+    """A GIF of few, chosen colours, so that it stays small and flat areas stay flat.
+
+    ``colours``: as ``#rrggbb``, at most 255; each pixel takes the nearest. ``seconds``: between
+    pictures. A GIF counts hundredths; pictures are spread so that the whole keeps time.
+    """
+
+    def __init__(self, *, colours: list[str], seconds: float) -> None:
+        from PIL import Image
+
+        if seconds < 0.02:
+            raise InputError(
+                f"Gif: a picture every {seconds:g} s; browsers slow down below 0.02 s. "
+                "Draw fewer pictures a second."
+            )
+        self._palette = Image.new("P", (1, 1))
+        self._palette.putpalette(bytes.fromhex("".join(one.removeprefix("#") for one in colours)))
+        self._seconds = seconds
+        self._pictures: list[Image.Image] = []
+
+    def add(self, pixels: UInt8[np.ndarray, "row column 3"]) -> None:
+        """Append one picture."""
+        from PIL import Image
+
+        picture = Image.fromarray(pixels)
+        self._pictures.append(picture.quantize(palette=self._palette, dither=Image.Dither.NONE))
+
+    def write(self, path: Path) -> None:
+        """Write the pictures, looping for ever."""
+        first, *others = self._pictures
+        ends = np.round(100.0 * self._seconds * np.arange(len(self._pictures) + 1)).astype(int)
+        first.save(
+            path,
+            format="GIF",
+            save_all=True,
+            append_images=others,
+            duration=(10 * np.diff(ends)).tolist(),
+            loop=0,
+            optimize=True,
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
