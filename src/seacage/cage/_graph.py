@@ -8,7 +8,6 @@ from seacage.cage._parts import Mesh
 # A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer
 SNAPPED = 0.01
 
-
 # Of the even one: the narrowest sector that spokes are moved to for the sake of bridles [-]
 LEAST_SECTOR = 0.4
 

@@ -45,7 +45,11 @@ class TangentPlane:
         position = self._near(position)
         latitude = np.full(len(position), self.latitude)
         longitude = np.full(len(position), self.longitude)
-        meridian, parallel = _radii(self.latitude)
+        phi = math.radians(self.latitude)
+        root = math.sqrt(1.0 - _ECCENTRICITY2 * math.sin(phi) ** 2)
+        # Radii of the meridian's curve and of the parallel [m]
+        meridian = EQUATOR_RADIUS * (1.0 - _ECCENTRICITY2) / root**3
+        parallel = EQUATOR_RADIUS * math.cos(phi) / root
         for _ in range(_ROUNDS):
             miss = position - self.local(latitude, longitude, -position[:, 2])
             latitude = latitude + np.rad2deg(miss[:, 1] / meridian)
@@ -85,11 +89,3 @@ def _on_ellipsoid(latitude: PerPoint, longitude: PerPoint) -> Point3:
             across * (1.0 - _ECCENTRICITY2) * np.sin(phi),
         ]
     )
-
-
-def _radii(latitude: float) -> tuple[float, float]:
-    """Of the meridian's curve and of the parallel [m]."""
-    phi = math.radians(latitude)
-    root = math.sqrt(1.0 - _ECCENTRICITY2 * math.sin(phi) ** 2)
-    meridian = EQUATOR_RADIUS * (1.0 - _ECCENTRICITY2) / root**3
-    return meridian, EQUATOR_RADIUS * math.cos(phi) / root
