@@ -84,13 +84,11 @@ def waves_at_site(
     """
     kept = _usable(record)
     time = record.time[kept]
-    shift = _shift(time, buoy_time[0], buoy_time[-1], stream=record.stream)
-    first = np.searchsorted(time, buoy_time[0] - shift, side="right") - 1
-    last = np.searchsorted(time, buoy_time[-1] - shift) + 1
-    values = {key: record.values[key][kept][first:last] for key in _KEYS}
+    shift, rows = _same_days(time, buoy_time[0], buoy_time[-1], stream=record.stream)
+    values = {key: record.values[key][kept][rows] for key in _KEYS}
     hs = np.minimum(values["hs_m"] * factor, most)
     tp = np.maximum(values["tp_s"], shortest_period(hs))
-    begun = time[first].astype("datetime64[m]")
+    begun = time[rows.start].astype("datetime64[m]")
     lengthened = np.mean(tp > values["tp_s"])
     note = (
         f"Waves of {record.stream} ({record.origin}) from {begun}Z on, moved by "
@@ -99,9 +97,9 @@ def waves_at_site(
     )
     return Record(
         stream=record.stream,
-        time=time[first:last] + shift,
+        time=time[rows] + shift,
         values={**values, "hs_m": hs, "tp_s": tp},
-        flags={key: record.flags[key][kept][first:last] for key in _KEYS},
+        flags={key: record.flags[key][kept][rows] for key in _KEYS},
         origin=Origin.VIRTUAL_FIELD,
         notes=(note,),
     )
@@ -140,26 +138,20 @@ def _usable(record: Record) -> Bool[np.ndarray, " row"]:
     return np.logical_and.reduce([record.usable(key) for key in _KEYS])
 
 
-def _shift(
+def _same_days(
     time: AnyPerRow, start: np.datetime64, end: np.datetime64, *, stream: str
-) -> np.timedelta64:
-    """From the first year whose same days have no long gap to the days wanted."""
+) -> tuple[np.timedelta64, slice]:
+    """Shift from the first year whose same days have no long gap to those wanted, and its rows."""
     new_year = start.astype("datetime64[Y]")
     years = np.unique(time.astype("datetime64[Y]"))
     for year in years:
         shift = new_year.astype(start.dtype) - year.astype(start.dtype)
-        if _has(time, start - shift, end - shift):
-            return shift
+        first = int(np.searchsorted(time, start - shift, side="right")) - 1
+        last = int(np.searchsorted(time, end - shift))
+        gaps = np.diff(time[max(first, 0) : last + 1]) / np.timedelta64(1, "s")
+        if first >= 0 and last < len(time) and gaps.max(initial=0.0) <= _LONGEST_GAP:
+            return shift, slice(first, last + 1)
     raise InputError(
         f"{stream}: in none of {len(years)} years has it the waves from {start}Z to {end}Z, day "
         f"by day without a gap over {_LONGEST_GAP / _HOUR:g} h. Give a longer record of waves."
     )
-
-
-def _has(time: AnyPerRow, start: np.datetime64, end: np.datetime64) -> bool:
-    first = np.searchsorted(time, start, side="right") - 1
-    last = np.searchsorted(time, end)
-    if first < 0 or last == len(time):
-        return False
-    gaps = np.diff(time[first : last + 1]) / np.timedelta64(1, "s")
-    return bool(gaps.max(initial=0.0) <= _LONGEST_GAP)

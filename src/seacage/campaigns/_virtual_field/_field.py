@@ -1,8 +1,8 @@
 """A virtual field: a truth that the low fidelity misses, seen by imperfect sensors."""
 
 import tempfile
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -124,7 +124,7 @@ def virtual_field(
             cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
         )
         with _folder(kept) as folder:
-            stretches = simulate_share(request, folder, workers=workers, progress=progress)
+            stretches = simulate_share(request, Path(folder), workers=workers, progress=progress)
             return _simulate(request, gather_truth(request, stretches))
     if waves is not None or events or timetable is not None:
         raise InputError(
@@ -132,11 +132,9 @@ def virtual_field(
             'Leave them out, or take method="simulate".'
         )
     time = reading_times(buoy, every_s, usual_s=60.0)
-    with _folder(kept) as folder:
-        answers, error = true_responses(
-            cage, hidden, store=folder, workers=workers, progress=progress
-        )
-    return _settle(cage, buoy, hidden, seed, time, answers, error)
+    with _folder(kept) as store:
+        grid = true_responses(cage, hidden, store=Path(store), workers=workers, progress=progress)
+    return _settle(cage, buoy, hidden, seed, time, *grid)
 
 
 def virtual_field_share(
@@ -176,13 +174,8 @@ def _in_time(buoy: Record, every_s: float | None, timetable: Timetable | None) -
     return {"time": time, "timetable": timetable or Timetable.over(buoy)}
 
 
-@contextmanager
-def _folder(kept: str | Path | None) -> Generator[Path]:
-    if kept is not None:
-        yield Path(kept)
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        yield Path(folder)
+def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:
+    return tempfile.TemporaryDirectory() if kept is None else nullcontext(kept)
 
 
 def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
@@ -215,14 +208,9 @@ def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
         hidden_sha256=hidden.sha256,
         notes=_simulation_notes(request, truth),
     )
-    happened = tuple(f"Event: {event}." for event in request.events)
-    return VirtualField(
-        record=record,
-        truth=replace(
-            record, buoy=request.buoy, sensors=exact, notes=(*record.notes, *happened, _EXACT)
-        ),
-        means=truth.means,
-    )
+    notes = (*record.notes, *(f"Event: {event}." for event in request.events), _EXACT)
+    exactly = replace(record, buoy=request.buoy, sensors=exact, notes=notes)
+    return VirtualField(record=record, truth=exactly, means=truth.means)
 
 
 def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
@@ -274,10 +262,8 @@ def _settle(
         name: sense(sensor, hidden, rng)
         for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
-    return VirtualField(
-        record=replace(truth, sensors=seen),
-        truth=replace(truth, notes=(*truth.notes, _EXACT)),
-    )
+    exactly = replace(truth, notes=(*truth.notes, _EXACT))
+    return VirtualField(record=replace(truth, sensors=seen), truth=exactly)
 
 
 def current_over_net(
