@@ -78,8 +78,7 @@ def cost_figure(
     NaN where a method did not do it.
     """
     place = np.arange(len(methods))
-    with _style.style():
-        figure = _style.blank_figure(10.0, 0.9 + 0.27 * len(methods))
+    with _style.page(10.0, 0.9 + 0.27 * len(methods)) as figure:
         panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
         for axes, (title, cost) in zip(panels, costs.items(), strict=True):
             done = np.isfinite(cost)

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import COUNTS, FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
+from seacage.figures._style import COUNTS, FIT, INK, LOW, MULTI, SENSOR, head, page
 from seacage.figures._types import Axes, Figure, PolyCollection
 
 _BAND = 1.96
@@ -55,8 +55,7 @@ def density_figure(comparison: Comparison) -> Figure:
 
     Both share limits and counts; the dashed line is y = x, the red one the best fit.
     """
-    with style():
-        figure = blank_figure(6.6, 3.35)
+    with page(6.6, 3.35) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         panels = density_panels(left, right, comparison)
         left.legend(loc="lower right", handlelength=1.8)
@@ -69,8 +68,7 @@ def density_figure(comparison: Comparison) -> Figure:
 
 def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datetime64) -> Figure:
     """The sensor, low fidelity and multifidelity with its 95 % band, from start to end [UTC]."""
-    with style():
-        figure = blank_figure(10.0, 2.55)
+    with page(10.0, 2.55) as figure:
         axes = figure.subplots()
         series_panel(axes, comparison, start=start, end=end)
         head(axes, f"{comparison.sensor}, unseen days", origin=comparison.origin, legend=4)
@@ -86,8 +84,7 @@ def rows_figure(
 
     All scatters share the scale of their counts; each row has limits of its own.
     """
-    with style():
-        figure = blank_figure(11.0, 0.75 + 2.6 * len(comparisons))
+    with page(11.0, 0.75 + 2.6 * len(comparisons)) as figure:
         grid = figure.subplots(
             len(comparisons), 3, squeeze=False, width_ratios=[1.0, 1.0, 2.15]
         ).tolist()

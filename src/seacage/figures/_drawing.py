@@ -8,7 +8,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import towards
 from seacage.figures._net import draw_bridles, draw_frame, draw_ghost, draw_sensors
-from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, head, note, style
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, aside, head, note, page
 from seacage.figures._types import Axes, Figure
 
 _SIDE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
@@ -31,8 +31,7 @@ def cage_drawing_figure(cage: Cage) -> Figure:
     so. Named are rings, corners, lines and sensors.
     """
     reach = float(np.abs(cage.corner_position[:, :2]).max())
-    with style():
-        figure = blank_figure(8.0, 11.0)
+    with page(8.0, 11.0) as figure:
         # A sea bed far below would leave the net no room.
         bottom = min(cage.site.water_depth, 1.5 * max(_depths(cage).values()))
         side, plan = figure.subplots(2, 1, height_ratios=(bottom + 0.4 * reach, 3.1 * reach))
@@ -67,10 +66,6 @@ def _measure(axes: Axes, start: tuple[float, float], end: tuple[float, float], t
         axes.text(middle, start[1], text, ha="center", va="center", **_SMALL)
 
 
-def _aside(axes: Axes, text: str) -> None:
-    axes.set_title(text, loc="right", pad=8.0, color=MUTED, fontsize=8.0, fontweight="normal")
-
-
 def _finish_side(axes: Axes, cage: Cage, reach: float, bottom: float) -> None:
     """Depths on the left, rings on the right, weights where they hang, water and bed."""
     radius, mesh, site, depths = cage.collar.radius, cage.mesh, cage.site, _depths(cage)
@@ -96,7 +91,7 @@ def _finish_side(axes: Axes, cage: Cage, reach: float, bottom: float) -> None:
     _name_depth_sensors(axes, cage, _SIDE)
     axes.set_ylabel("z [m]")
     head(axes, f"{cage.name}: side view, towards north")
-    _aside(axes, f"in water: tube {cage.sinker_tube.weight:g} N/m, tip {cage.tip.weight:g} N")
+    aside(axes, f"in water: tube {cage.sinker_tube.weight:g} N/m, tip {cage.tip.weight:g} N", 8.0)
 
 
 def _finish_plan(axes: Axes, cage: Cage, reach: float) -> None:
@@ -120,7 +115,7 @@ def _finish_plan(axes: Axes, cage: Cage, reach: float) -> None:
         axes.text(place[0] + 0.14 * reach, place[1], text, va="center", color=colour)
     axes.set_ylabel("y, north [m]")
     head(axes, "Plan, north up")
-    _aside(axes, f"node = {cage.spokes} · ring + spoke, counter-clockwise from spoke 0")
+    aside(axes, f"node = {cage.spokes} · ring + spoke, counter-clockwise from spoke 0", 8.0)
 
 
 def _name_corners(axes: Axes, cage: Cage, reach: float) -> None:

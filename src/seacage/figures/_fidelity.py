@@ -57,8 +57,7 @@ def left_figure(
     ``origin``: of the truth.
     """
     place = np.arange(len(sensors))[::-1]
-    with _style.style():
-        figure = _style.blank_figure(6.6, 0.6 + 0.29 * len(sensors))
+    with _style.page(6.6, 0.6 + 0.29 * len(sensors)) as figure:
         axes = figure.subplots()
         axes.barh(place, np.ones(len(left)), 0.62, color=_style.LOW, alpha=0.18, lw=0)
         axes.barh(place, left, 0.62, color=_style.LOW, lw=0)
@@ -87,8 +86,7 @@ def gain_figure(
 ) -> Figure:
     """Gains with their intervals, where there is nothing to gain and where there is."""
     place = np.arange(len(names))[::-1]
-    with _style.style():
-        figure = _style.blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
+    with _style.page(_WIDTH, 0.75 + 0.29 * len(names)) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
         for axes, gain, colour in ((left, null, _style.MUTED), (right, real, _style.MULTI)):
             axes.axvline(0.0, color=_style.INK, lw=0.9)

@@ -7,7 +7,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import Origin, towards
-from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, head, page
 from seacage.figures._types import Axes, Figure, PolyCollection
 from seacage.ocean import SeaState
 
@@ -50,8 +50,7 @@ def net_figure(
     top = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     across = np.array([along[1], -along[0], 0.0])  # from the page towards the reader
     moved = np.linalg.norm(node_position - rest, axis=1)
-    with style():
-        figure = blank_figure(10.0, 3.9)
+    with page(10.0, 3.9) as figure:
         left, right = figure.subplots(1, 2, width_ratios=[1.62, 1.0])
         for axes, view, toward in ((left, side, across), (right, top, np.array([0.0, 0.0, 1.0]))):
             draw_ghost(axes, cage, rest, view)
@@ -139,8 +138,7 @@ def draw_sensors(axes: Axes, cage: Cage, position: Node3, view: View) -> None:
 
 def _finish_side(axes: Axes, sea: SeaState | None) -> None:
     axes.axhline(0.0, color="#7fb2dd", lw=0.8, zorder=0)
-    axes.set_xlabel("Along the current [m]")
-    axes.set_ylabel("z [m]")
+    axes.set(xlabel="Along the current [m]", ylabel="z [m]")
     axes.legend(loc="lower left", handletextpad=0.2)
     if sea is not None and sea.current_speed > 0.0:
         low, _ = axes.get_xlim()
@@ -151,8 +149,7 @@ def _finish_side(axes: Axes, sea: SeaState | None) -> None:
 def _finish_top(
     axes: Axes, cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
 ) -> None:
-    axes.set_xlabel("x, east [m]")
-    axes.set_ylabel("y, north [m]")
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]")
     if sea is not None and sea.current_speed > 0.0:
         along = sea.current_velocity / sea.current_speed
         # Half way out on the frame's up-stream side, where no bridle is.

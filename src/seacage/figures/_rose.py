@@ -5,7 +5,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, blank_figure, caption, style
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, aside, caption, page
 from seacage.figures._types import Figure, PolarAxes
 
 _HOLE = 0.3  # radius of the empty middle over that of the bars' longest, so that bars begin apart
@@ -39,8 +39,7 @@ def tension_rose_figure(
     """
     if not len(current_speed):
         raise InputError("tension_rose_figure: there is no case to draw. Give one or more.")
-    with style():
-        figure = blank_figure(5.6, 4.7)
+    with page(5.6, 4.7) as figure:
         axes = _compass(figure)
         bearing = np.deg2rad(np.array(cage.bridles.bearings) + cage.heading)
         share = 100.0 / cage.bridle_capacity
@@ -57,9 +56,7 @@ def tension_rose_figure(
         _arrow(axes, current_to)
         axes.legend(loc="center left", bbox_to_anchor=(1.04, 0.5), title="Current")
         axes.set_title("Bridles: share of capacity", pad=18.0)
-        axes.set_title(
-            str(origin), loc="right", pad=18.0, color=MUTED, fontsize=8.0, fontweight="normal"
-        )
+        aside(axes, str(origin), 18.0)
     return figure
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import FIT, LOW, MULTI, MUTED, blank_figure, head, note, style
+from seacage.figures._style import FIT, LOW, MULTI, MUTED, head, note, page
 from seacage.figures._types import Axes, Figure
 
 _COLOURS = (MULTI, LOW, "#4f8a4c", "#7d5ba6", "#b08a1e", "#3a9aa3", "#8a5a44")
@@ -35,8 +35,7 @@ def shape_error_figure(
             f"shape_error_figure: {len(errors)} models in one figure cannot be told apart. Give at "
             f"most {len(_COLOURS)}."
         )
-    with style():
-        figure = blank_figure(6.6, 3.1)
+    with page(6.6, 3.1) as figure:
         axes = figure.subplots()
         for colour, (name, error) in zip(_COLOURS, errors.items(), strict=False):
             axes.scatter(
@@ -45,9 +44,7 @@ def shape_error_figure(
         _mark(axes, _LIMIT, "1 m: an ROV's distance", colour=FIT)
         if floor is not None:
             _mark(axes, floor, "mean of half an hour", colour=MUTED)
-        axes.set_yscale("log")
-        axes.set_xlabel("Current speed [m/s]")
-        axes.set_ylabel("Mean absolute node error [m]")
+        axes.set(yscale="log", xlabel="Current speed [m/s]", ylabel="Mean absolute node error [m]")
         abreast = len(errors) if len(errors) <= ABREAST else 0
         head(axes, "Whole shapes, held-out simulations", origin=origin, legend=abreast)
         if len(errors) > ABREAST:
@@ -74,8 +71,7 @@ def shape_cases_figure(
     bottom. A bar that would reach below zero ends at the least case.
     """
     least = min(float(error[error > 0.0].min(initial=_LIMIT)) for error in errors.values())
-    with style():
-        figure = blank_figure(11.0, 3.3)
+    with page(11.0, 3.3) as figure:
         panels = figure.subplots(1, 4, sharey=True, width_ratios=[1.0, 1.0, 1.0, 0.8]).tolist()
         for axis, axes in enumerate(panels[:3]):
             for colour, error in zip(MODEL_COLOURS, errors.values(), strict=False):
@@ -89,8 +85,7 @@ def shape_cases_figure(
         for axes in panels:
             axes.axhline(_LIMIT, color=FIT, lw=1.1)
             axes.set_yscale("log")
-        panels[0].set_ylim(bottom=0.7 * least)
-        panels[0].set_ylabel("Mean absolute node error [m]")
+        panels[0].set(ylim=(0.7 * least, None), ylabel="Mean absolute node error [m]")
         beside = {"xycoords": ("axes fraction", "data"), "color": FIT, "fontsize": 8.5}
         note(panels[0], "1 m", (0.0, _LIMIT), (3, 3), **beside)
         handles, names = panels[3].get_legend_handles_labels()

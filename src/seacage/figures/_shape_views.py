@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, LOW, MUTED, blank_figure, style
+from seacage.figures._style import FIT, LOW, MUTED, page
 from seacage.figures._types import Figure
 
 Node3 = Float[np.ndarray, "node 3"]
@@ -36,8 +36,7 @@ def shape_views_figure(
     distance are marked.
     """
     models = list(views[0].predicted)
-    with style():
-        figure = blank_figure(3.7 * len(models), 0.5 + 3.0 * len(views))
+    with page(3.7 * len(models), 0.5 + 3.0 * len(views)) as figure:
         grid = figure.subplots(
             len(views), len(models), squeeze=False, subplot_kw={"projection": "3d"}
         ).tolist()

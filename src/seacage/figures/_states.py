@@ -6,7 +6,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, towards
 from seacage.figures._net import draw_bridles, draw_ghost, draw_net
-from seacage.figures._style import INK, MUTED, blank_figure, style
+from seacage.figures._style import INK, aside, blank_figure, style
 from seacage.figures._types import Figure
 
 _ROOM = 3.0  # shown round the outermost net [m]
@@ -92,4 +92,4 @@ def _label(rows: np.ndarray, speed: Float[np.ndarray, " case"], origin: Origin) 
         axes.set_xlabel("Along the current [m]")
     rows[0, 0].set_ylabel("z [m]")
     rows[1, 0].set_ylabel("Left of the current [m]", color=INK)
-    rows[0, -1].set_title(str(origin), loc="right", color=MUTED, fontsize=8.0, fontweight="normal")
+    aside(rows[0, -1], str(origin))

@@ -37,6 +37,18 @@ def blank_figure(width: float, height: float) -> Figure:
     return Figure(figsize=(width, height), layout="constrained")
 
 
+@contextmanager
+def page(width: float, height: float) -> Iterator[Figure]:
+    """An empty figure that is drawn in our style inside this [inch]."""
+    with style():
+        yield blank_figure(width, height)
+
+
+def aside(axes: Axes, text: str, pad: float | None = None, *, colour: str = MUTED) -> None:
+    """Small text on the right, at the height of the title."""
+    axes.set_title(text, loc="right", pad=pad, color=colour, fontsize=8.0, fontweight="normal")
+
+
 def head(axes: Axes, title: str, *, origin: Origin | None = None, legend: int = 0) -> None:
     """Title on the left, where the numbers come from on the right.
 
@@ -45,9 +57,7 @@ def head(axes: Axes, title: str, *, origin: Origin | None = None, legend: int = 
     pad = 22.0 if legend else 8.0
     axes.set_title(title, pad=pad)
     if origin is not None:
-        axes.set_title(
-            str(origin), loc="right", pad=pad, color=MUTED, fontsize=8.0, fontweight="normal"
-        )
+        aside(axes, str(origin), pad)
     if legend:
         axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 0.985), ncols=legend, handlelength=1.6)
 
