@@ -21,7 +21,7 @@ from seacage.service._cli import (
     _token,
     _train,
 )
-from seacage.service._cli._cage import _check, _draw, _new
+from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
 from seacage.service._cli._rov import _clearance, _inspect
 
@@ -63,7 +63,7 @@ def _options(
 _cage = typer.Typer(help="A cage's file: write one, check it, draw it.")
 _cage.command()(_new.new)
 _cage.command()(_check.check)
-_cage.command()(_draw.draw)
+_cage.command()(_check.draw)
 
 app.add_typer(_cage, name="cage")
 app.command()(_settle.settle)
