@@ -137,13 +137,8 @@ class Cage(TomlFile):
 
     def fouled(self, *, shallow: float, deep: float, boundary_depth: float = 10.0) -> Self:
         """A copy whose netting has grown: solidity added above and below a depth [m]."""
-        return self.altered(
-            netting={
-                "fouling_shallow": shallow,
-                "fouling_deep": deep,
-                "fouling_boundary_depth_m": boundary_depth,
-            }
-        )
+        growth = {"fouling_shallow": shallow, "fouling_deep": deep}
+        return self.altered(netting={**growth, "fouling_boundary_depth_m": boundary_depth})
 
     def rotated(self, degrees: float) -> Self:
         """A copy turned clockwise, mooring and sensors with it."""
@@ -304,11 +299,10 @@ class Cage(TomlFile):
     def warnings(self) -> tuple[str, ...]:
         """Differences from the file: bridles that were moved to the nearest spoke."""
         held = (90.0 - np.rad2deg(self.spoke_angles[self.bridle_nodes])) % 360.0
+        bridles = zip(self.bridle_names, self.bridles.bearings, held.tolist(), strict=True)
         moved = [
             f"{name} from {bearing:g}° to {now:g}°"
-            for name, bearing, now in zip(
-                self.bridle_names, self.bridles.bearings, held.tolist(), strict=True
-            )
+            for name, bearing, now in bridles
             if abs((now - bearing + 180.0) % 360.0 - 180.0) > _graph.SNAPPED
         ]
         warning = (

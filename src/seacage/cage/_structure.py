@@ -127,11 +127,8 @@ class Structure(TomlFile):
         """
         net, first = self.net[index], self._starts["net"][index]
         inner = first + np.arange((net.rows - 1) * self.spokes).reshape(-1, self.spokes)
-        last = (
-            self.ring_nodes(net.lower)
-            if net.lower
-            else np.full(self.spokes, first + (net.rows - 1) * self.spokes)
-        )
+        centre = np.full(self.spokes, first + inner.size)
+        last = self.ring_nodes(net.lower) if net.lower else centre
         return np.vstack([self.ring_nodes(net.upper), inner, last])
 
     def tie_nodes(self, index: int) -> Int[np.ndarray, "tie node"]:

@@ -11,14 +11,9 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
+from seacage.campaigns._virtual_field import _sensors
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._responses import Responses, true_responses
-from seacage.campaigns._virtual_field._sensors import (
-    air_pressure,
-    radio_silence,
-    receive_buoy,
-    sense,
-)
 from seacage.campaigns._virtual_field._simulated import (
     FieldRequest,
     Truth,
@@ -183,26 +178,19 @@ def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
     cage, hidden, time = request.cage, request.hidden, request.time
     chance = np.random.default_rng([request.seed, *b"sensors"])
     radio, air, at_buoy, *own = chance.spawn(3 + len(cage.sensor_names))
-    silence = radio_silence(hidden, time, radio)
+    silence = _sensors.radio_silence(hidden, time, radio)
     known = truth.available
-    pressure = air_pressure(hidden, time, air)[known]
-    head = truth.wave_head[known]
+    pressure = _sensors.air_pressure(hidden, time, air)[known]
+    heads = [*truth.wave_head[known].T, *[None] * len(cage.shackles)]
     exact = _exact_sensors(cage, time[known], truth.readings(cage)[known])
+    faults: dict[str, Any] = {"silence": silence, "events": request.events}
     seen = {
-        name: sense(
-            sensor,
-            hidden,
-            rng,
-            wave_head=head[:, number] if number < head.shape[1] else None,
-            pressure=pressure,
-            silence=silence,
-            events=request.events,
-        )
-        for number, ((name, sensor), rng) in enumerate(zip(exact.items(), own, strict=True))
+        name: _sensors.sense(exact[name], hidden, rng, wave_head=head, pressure=pressure, **faults)
+        for name, head, rng in zip(exact, heads, own, strict=True)
     }
     record = FieldRecord(
         cage=cage.name,
-        buoy=receive_buoy(request.buoy, hidden, at_buoy, silence=silence, events=request.events),
+        buoy=_sensors.receive_buoy(request.buoy, hidden, at_buoy, **faults),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
@@ -259,7 +247,7 @@ def _settle(
         ),
     )
     seen = {
-        name: sense(sensor, hidden, rng)
+        name: _sensors.sense(sensor, hidden, rng)
         for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
     exactly = replace(truth, notes=(*truth.notes, _EXACT))

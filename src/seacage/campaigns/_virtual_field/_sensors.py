@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float, Int, Shaped
+from jaxtyping import Float, Shaped
 
 from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._events import Event
@@ -126,7 +126,11 @@ def _receive(
             column[rows] = column[rows.start]
     spikes = Spells.by_chance(all_times, spiking, per_week=outages.spikes_per_week)
     for key, size in spike_sizes.items():
-        _spike(values[key], np.searchsorted(time, spikes.start), size, spiking)
+        # Single readings are set far off.
+        rows = np.searchsorted(time, spikes.start)
+        far = size * spiking.choice([-1.0, 1.0], len(rows)) * spiking.uniform(0.7, 1.3, len(rows))
+        there = rows < len(time)
+        values[key][rows[there]] += far[there]
     gaps = Spells.by_chance(
         all_times, losing, per_week=outages.gaps_per_week, mean_h=outages.gap_mean_h
     )
@@ -137,12 +141,3 @@ def _receive(
         received &= alive.cover(time)
     values = {key: column[received] for key, column in values.items()}
     return check_record(replace(sent, time=time[received], values=values, flags={}))
-
-
-def _spike(
-    column: Values, rows: Int[np.ndarray, " spike"], size: float, rng: np.random.Generator
-) -> None:
-    """Set single readings far off, in place."""
-    far = size * rng.choice([-1.0, 1.0], size=len(rows)) * rng.uniform(0.7, 1.3, size=len(rows))
-    there = rows < len(column)
-    column[rows[there]] += far[there]

@@ -295,13 +295,10 @@ class TruthParameters:
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
-        least, most = self.fouling.shallow_least, self.fouling.shallow_most
-        shallow = least + growth * (most - least)
-        return self._build(cage).fouled(
-            shallow=shallow,
-            deep=self.fouling.deep_share * shallow,
-            boundary_depth=self.fouling.boundary_depth_m,
-        )
+        own = self.fouling
+        shallow = own.shallow_least + growth * (own.shallow_most - own.shallow_least)
+        deep, boundary = own.deep_share * shallow, own.boundary_depth_m
+        return self._build(cage).fouled(shallow=shallow, deep=deep, boundary_depth=boundary)
 
     def fine_cage(self, cage: Cage) -> Cage:
         """The true cage on a finer mesh, whose nodes include those drawn; nothing grows on it.

@@ -10,7 +10,6 @@ from jaxtyping import Float
 from seacage import ocean
 from seacage.campaigns._noise import wandering
 from seacage.campaigns._virtual_field._truth_parameters import (
-    CurrentTruth,
     FoulingTruth,
     ProfileTruth,
     TruthParameters,
@@ -296,7 +295,11 @@ def current_at_cage(
     arrived = _between(seconds - lag, there, at_buoy)
     step, sd, memory = float(seconds[1] - seconds[0]), way.residual_sd_m_s, way.residual_memory_s
     eddies = wandering(rng, len(seconds), sd=sd, step_s=step, memory_s=memory)
-    return _shelter(arrived, way) + eddies
+    # Slowed and turned on its way, smoothly by direction
+    to = compass(arrived)
+    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
+    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
+    return towards(np.linalg.norm(arrived, axis=1) * factor, to + turn) + eddies
 
 
 def _buoy_series(buoy: Record) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
@@ -316,14 +319,6 @@ def _between(
     at: PerT, seconds: PerRow, values: Float[np.ndarray, "row value"]
 ) -> Float[np.ndarray, "t value"]:
     return np.column_stack([np.interp(at, seconds, column) for column in values.T])
-
-
-def _shelter(velocity: Float[np.ndarray, "t 2"], way: CurrentTruth) -> Float[np.ndarray, "t 2"]:
-    """Slowed and turned on its way, smoothly by direction."""
-    to = compass(velocity)
-    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
-    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
-    return towards(np.linalg.norm(velocity, axis=1) * factor, to + turn)
 
 
 def _swing(to: PerT, least: float, most: float, most_to: float) -> PerT:
