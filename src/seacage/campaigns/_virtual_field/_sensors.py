@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.campaigns._noise import wandering
+from seacage.campaigns._buoy_records import wandering
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._spells import Spells
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters

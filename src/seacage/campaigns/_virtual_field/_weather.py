@@ -8,13 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage import ocean
-from seacage.campaigns._noise import wandering
+from seacage.campaigns._buoy_records import shortest_period, usable_waves, wandering
 from seacage.campaigns._virtual_field._truth_parameters import (
     FoulingTruth,
     ProfileTruth,
     TruthParameters,
 )
-from seacage.campaigns._waves import shortest_period, usable_waves
 from seacage.conventions import InputError, compass, towards
 from seacage.dynamics import AbstractWeather
 from seacage.records import Record

@@ -1,4 +1,4 @@
-"""Records of waves: one made from weather and chance, and a real winter brought to a site."""
+"""Buoys' records of currents and waves: made from tides, weather and chance, or a real winter's."""
 
 import math
 from datetime import datetime
@@ -6,13 +6,20 @@ from datetime import datetime
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
-from seacage.campaigns._noise import wandering
 from seacage.conventions import GRAVITY, InputError, Origin, compass, towards
 from seacage.ocean import steepness_limit
 from seacage.records import Record, check_record, instant
 
 AnyPerRow = Shaped[np.ndarray, " row"]
 _HOUR = 3600.0
+# Period [h], and half-axes of the current's ellipse along and across the stream [m/s]
+_TIDES = {"M2": (12.4206012, 0.62, 0.08), "S2": (12.0, 0.20, 0.03), "K1": (23.9344696, 0.14, 0.03)}
+
+# Where the flood goes, clockwise from north: along the long axis of the ellipses [deg]
+_STREAM_TO = 20.0
+
+_DRIFT = 0.10  # mean current along the stream [m/s]
+
 _KEYS = ("hs_m", "tp_s", "wave_from_deg")
 _HEIGHT = (0.5, 0.58, 3.0)  # median of Hs [m], spread of its logarithm, and the most [m]
 # Tp / (5 sqrt(Hs)): its least, the median above that, and the spread of that one's logarithm. Near
@@ -23,6 +30,79 @@ _SWELL = -0.6  # correlation of height and relative period: a low sea is mostly 
 _MEMORY = 40.0 * _HOUR  # of the weather [s]
 _FROM = 250.0  # where the weather comes from on average, clockwise from north [deg]
 _LONGEST_GAP = 12.0 * _HOUR  # in a winter that has it all [s]
+
+
+def wandering(
+    rng: np.random.Generator, steps: int, *, sd: float, step_s: float, memory_s: float
+) -> Float[np.ndarray, "step 2"]:
+    """A stationary Ornstein–Uhlenbeck vector, sampled exactly.
+
+    ``rng``: source of chance. ``steps``: how many samples. ``sd``: of each component [any unit,
+    kept]. ``step_s``, ``memory_s``: time between samples, and in which the correlation falls to 1/e
+    [s].
+
+    Source: Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
+    """
+    from scipy.signal import lfilter
+
+    kept = np.exp(-step_s / memory_s)
+    shocks = rng.normal(scale=sd * np.sqrt(1.0 - kept**2), size=(steps, 2))
+    shocks[0] = rng.normal(scale=sd, size=2)
+    return np.asarray(lfilter([1.0], [1.0, -kept], shocks, axis=0))
+
+
+def generated_current(
+    seed: int, *, start: datetime, days: float = 50.0, every_s: float = 720.0
+) -> Record:
+    """A buoy's current record with tides, weather and turbulence, as a buoy would report it.
+
+    The tides are ellipses of M2, S2 and K1 with phases drawn from the seed, so springs
+    follow neaps; the weather wanders over days, the turbulence over minutes. The buoy adds
+    its own error (0.015 m/s, 3 degrees) and rounds to 0.1 cm/s and 1 degree. With the
+    default sizes the mean speed is near 0.45 m/s and a few values pass 1 m/s. It is no
+    place's climate: origin "virtual field".
+
+    Parameters
+    ----------
+    seed
+        Of phases, weather and noise.
+    start
+        Time of the first value, with its zone.
+    days
+        Length of the record.
+    every_s
+        Time between values [s].
+
+    Source: periods of the constituents: Doodson (1921).
+    """
+    steps = int(days * 24.0 * _HOUR / every_s)
+    if steps < 1:
+        raise InputError(f"generated_current: {days:g} days hold no step of {every_s:g} s.")
+    rng = np.random.default_rng(seed)
+    time = np.arange(steps) * every_s
+    along, across = (_tide(rng, time) + np.array([_DRIFT, 0.0])).T
+    to = np.full(steps, _STREAM_TO)
+    stream = towards(along, to) + towards(across, to + 90.0)
+    weather = wandering(rng, steps, sd=0.09, step_s=every_s, memory_s=36.0 * _HOUR)
+    turbulence = wandering(rng, steps, sd=0.03, step_s=every_s, memory_s=0.5 * _HOUR)
+    velocity = stream + weather + turbulence
+    speed = np.linalg.norm(velocity, axis=1) + rng.normal(scale=0.015, size=steps)
+    direction = compass(velocity) + rng.normal(scale=3.0, size=steps)
+    values = {
+        "current_speed_m_s": np.round(np.maximum(speed, 0.0), 3),
+        "current_to_deg": np.round(direction) % 360.0,
+    }
+    note = f"A generated current: tide, weather and noise from seed {seed}."
+    return _buoy_record(start, time, values, note)
+
+
+def _tide(rng: np.random.Generator, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 2"]:
+    """Velocity along and to the right of the stream [m/s]."""
+    velocity = np.zeros((len(time), 2))
+    for period, along, across in _TIDES.values():
+        phase = 2.0 * np.pi * (time / (period * _HOUR) + rng.uniform())
+        velocity += np.column_stack([along * np.cos(phase), across * np.sin(phase)])
+    return velocity
 
 
 def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record:
@@ -47,18 +127,24 @@ def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record
     least, above, width = _PERIOD
     long = _SWELL * high + math.sqrt(1.0 - _SWELL**2) * own
     tp = 5.0 * np.sqrt(hs) * (least + above * np.exp(width * long))
-    record = Record(
-        stream="buoy-1",
-        time=instant(start) + (np.arange(steps) * _HOUR * 1e6).astype("timedelta64[us]"),
-        values={
-            "hs_m": np.round(hs, 2),
-            "tp_s": np.round(tp, 1),
-            "wave_from_deg": np.round(compass(wind + towards(np.array(1.0), np.array(_FROM)))),
-        },
-        origin=Origin.VIRTUAL_FIELD,
-        notes=(f"Generated waves: weather from seed {seed}.",),
+    values = {
+        "hs_m": np.round(hs, 2),
+        "tp_s": np.round(tp, 1),
+        "wave_from_deg": np.round(compass(wind + towards(np.array(1.0), np.array(_FROM)))),
+    }
+    note = f"Generated waves: weather from seed {seed}."
+    return _buoy_record(start, np.arange(steps) * _HOUR, values, note)
+
+
+def _buoy_record(
+    start: datetime, seconds: AnyPerRow, values: dict[str, np.ndarray], note: str
+) -> Record:
+    """A generated record, checked as any."""
+    time = instant(start) + (seconds * 1e6).astype("timedelta64[us]")
+    origin = Origin.VIRTUAL_FIELD
+    return check_record(
+        Record(stream="buoy-1", time=time, values=values, origin=origin, notes=(note,))
     )
-    return check_record(record)
 
 
 def waves_at_site(
