@@ -23,7 +23,7 @@ from seacage.service._cli import (
 )
 from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
-from seacage.service._cli._rov import _clearance, _inspect
+from seacage.service._cli._rov import _commands
 
 app = typer.Typer(
     name="seacage",
@@ -76,8 +76,8 @@ app.command()(_score.score)
 app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
-app.command()(_clearance.clearance)
-app.command("inspect-path")(_inspect.inspect_path)
+app.command()(_commands.clearance)
+app.command("inspect-path")(_commands.inspect_path)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_archive.group, name="archive")
