@@ -14,7 +14,6 @@ from seacage.cage import _graph, _parts
 from seacage.cage._nearest import Nearest, nearest_on_net
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
-from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, NonsenseError, parse_toml, towards
 
 
@@ -240,11 +239,8 @@ class Cage(TomlFile):
     @cached_property
     def design_position(self) -> Float[np.ndarray, "node 3"]:
         """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
-        return _read_only(
-            _graph.node_positions(
-                self.mesh, self.spoke_angles, radius=self.collar.radius, heading=self.heading
-            )
-        )
+        of = {"radius": self.collar.radius, "heading": self.heading}
+        return _read_only(_graph.node_positions(self.mesh, self.spoke_angles, **of))
 
     @cached_property
     def edges(self) -> Int[np.ndarray, "edge 2"]:
@@ -260,7 +256,7 @@ class Cage(TomlFile):
         self, node_position: Float[np.ndarray, "*case node 3"]
     ) -> Float[np.ndarray, "*case"]:
         """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
-        return enclosed_volume(node_position, self.panels, self.ring_nodes(0))
+        return _graph.enclosed_volume(node_position, self.panels, self.ring_nodes(0))
 
     def nearest(
         self, point: Float[np.ndarray, "point 3"], node_position: Float[np.ndarray, "node 3"]

@@ -239,12 +239,9 @@ class _Eye:
         along = towards(np.array(1.0), np.array(current_to))
         away = np.array([-along[1], along[0]])
         sine, cosine = np.sin(_TILT), np.cos(_TILT)
-        return cls(
-            view=np.array([[*along, 0.0], [*(sine * away), cosine]]),
-            toward=np.array([*(-cosine * away), sine]),
-            along=along,
-            away=away,
-        )
+        view = np.array([[*along, 0.0], [*(sine * away), cosine]])
+        toward = np.array([*(-cosine * away), sine])
+        return cls(view=view, toward=toward, along=along, away=away)
 
     def project(self, position: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
         return position @ self.view.T

@@ -108,10 +108,8 @@ def rows_figure(
 def density_panels(left: Axes, right: Axes, comparison: Comparison) -> list[PolyCollection]:
     """Low fidelity and multifidelity against the sensor, beside each other."""
     left.set_ylabel(f"Predicted {comparison.quantity.lower()} [{comparison.unit}]")
-    return [
-        density_panel(left, comparison, multi=False),
-        density_panel(right, comparison, multi=True),
-    ]
+    sides = ((left, False), (right, True))
+    return [density_panel(axes, comparison, multi=multi) for axes, multi in sides]
 
 
 def density_panel(axes: Axes, comparison: Comparison, *, multi: bool) -> PolyCollection:

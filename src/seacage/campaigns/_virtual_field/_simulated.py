@@ -55,13 +55,9 @@ class FieldRequest:
     @cached_property
     def weather(self) -> Weather:
         """True weather at the cage."""
+        hidden, depth = self.hidden, self.cage.site.water_depth
         return true_weather(
-            self.buoy,
-            self.waves,
-            hidden=self.hidden,
-            seed=self.seed,
-            every_s=self.every,
-            depth=self.cage.site.water_depth,
+            self.buoy, self.waves, hidden=hidden, seed=self.seed, every_s=self.every, depth=depth
         )
 
     @cached_property

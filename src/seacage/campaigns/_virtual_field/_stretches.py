@@ -93,12 +93,8 @@ class StretchStore:
 
         Raises InputError: it holds those of another field.
         """
-        identity = {
-            "schema": "seacage stretches 1",
-            "seacage": version("seacage"),
-            "physics": PHYSICS,
-            **identity,
-        }
+        software = {"seacage": version("seacage"), "physics": PHYSICS}
+        identity = {"schema": "seacage stretches 1", **software, **identity}
         manifest = folder / _MANIFEST
         if manifest.exists():
             found = _manifest(manifest)

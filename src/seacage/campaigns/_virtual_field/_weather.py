@@ -59,12 +59,8 @@ class Even:
         last = len(self.values)
         low = min(max(math.floor(start / self.step) - self.first, 0), last - 2)
         high = max(min(math.ceil(end / self.step) - self.first + 1, last), low + 2)
-        return replace(
-            self,
-            values=self.values[low:high].copy(),
-            first=self.first + low,
-            count=self.count or last,
-        )
+        values = self.values[low:high].copy()
+        return replace(self, values=values, first=self.first + low, count=self.count or last)
 
     def _check(self, least: float, most: float) -> None:
         last = len(self.values) - 1
