@@ -19,6 +19,7 @@ from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.dynamics import PHYSICS, SPRINGS, Mooring, MovingLaw
+from seacage.records import CampaignRecord
 
 # Attributes that make two campaigns the same, and how people call them
 _IDENTITY = {
@@ -59,7 +60,7 @@ def run_campaign(
     parted: Sequence[str] = (),
     cluster: str | None = None,
     progress: Progress | None = None,
-) -> records.CampaignRecord:
+) -> CampaignRecord:
     """Simulate a cage in every sea state of a plan, into a Zarr store that outlives a kill.
 
     A block of cases is written when it is done; called again with the same cage, plan and
