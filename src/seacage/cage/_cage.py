@@ -14,7 +14,6 @@ from seacage.cage import _graph, _parts
 from seacage.cage._nearest import Nearest, nearest_on_net
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
-from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, NonsenseError, parse_toml, towards
 
 
@@ -137,13 +136,8 @@ class Cage(TomlFile):
 
     def fouled(self, *, shallow: float, deep: float, boundary_depth: float = 10.0) -> Self:
         """A copy whose netting has grown: solidity added above and below a depth [m]."""
-        return self.altered(
-            netting={
-                "fouling_shallow": shallow,
-                "fouling_deep": deep,
-                "fouling_boundary_depth_m": boundary_depth,
-            }
-        )
+        growth = {"fouling_shallow": shallow, "fouling_deep": deep}
+        return self.altered(netting={**growth, "fouling_boundary_depth_m": boundary_depth})
 
     def rotated(self, degrees: float) -> Self:
         """A copy turned clockwise, mooring and sensors with it."""
@@ -245,11 +239,8 @@ class Cage(TomlFile):
     @cached_property
     def design_position(self) -> Float[np.ndarray, "node 3"]:
         """The shape the net was cut to [m]; the rest shape hangs a little narrower."""
-        return _read_only(
-            _graph.node_positions(
-                self.mesh, self.spoke_angles, radius=self.collar.radius, heading=self.heading
-            )
-        )
+        of = {"radius": self.collar.radius, "heading": self.heading}
+        return _read_only(_graph.node_positions(self.mesh, self.spoke_angles, **of))
 
     @cached_property
     def edges(self) -> Int[np.ndarray, "edge 2"]:
@@ -265,7 +256,7 @@ class Cage(TomlFile):
         self, node_position: Float[np.ndarray, "*case node 3"]
     ) -> Float[np.ndarray, "*case"]:
         """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
-        return enclosed_volume(node_position, self.panels, self.ring_nodes(0))
+        return _graph.enclosed_volume(node_position, self.panels, self.ring_nodes(0))
 
     def nearest(
         self, point: Float[np.ndarray, "point 3"], node_position: Float[np.ndarray, "node 3"]
@@ -304,11 +295,10 @@ class Cage(TomlFile):
     def warnings(self) -> tuple[str, ...]:
         """Differences from the file: bridles that were moved to the nearest spoke."""
         held = (90.0 - np.rad2deg(self.spoke_angles[self.bridle_nodes])) % 360.0
+        bridles = zip(self.bridle_names, self.bridles.bearings, held.tolist(), strict=True)
         moved = [
             f"{name} from {bearing:g}° to {now:g}°"
-            for name, bearing, now in zip(
-                self.bridle_names, self.bridles.bearings, held.tolist(), strict=True
-            )
+            for name, bearing, now in bridles
             if abs((now - bearing + 180.0) % 360.0 - 180.0) > _graph.SNAPPED
         ]
         warning = (

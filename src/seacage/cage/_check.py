@@ -120,7 +120,12 @@ def _odd_whole(cage: Cage, of: Mapping[str, float]) -> Iterator[tuple[str, dict[
 
 def _odd_parts(cage: Cage) -> Iterator[tuple[str, dict[str, Any]]]:
     """Names of the remarks that hold for one of several parts, and what they are about."""
-    for part, excess in zip(cage.bridle_names, _bridle_excess(cage), strict=True):
+    # How much longer each bridle is than its pretension stretches it [m]
+    line, span = cage.bridles, _bridle_spans(cage)
+    give = (span - line.chain_length) / line.rope_axial_stiffness
+    stretch = line.pretension * (give + line.chain_length / line.chain_axial_stiffness)
+    excesses = (np.array(line.length_offset) - stretch).tolist()
+    for part, excess in zip(cage.bridle_names, excesses, strict=True):
         if excess >= 0.0:
             yield "slack", {"part": part, "at": excess}
     for corner in sorted({*range(len(cage.corner_position))} - {*cage.bridle_corner.tolist()}):
@@ -132,14 +137,6 @@ def _odd_parts(cage: Cage) -> Iterator[tuple[str, dict[str, Any]]]:
         at = -cage.design_position[cage.depth_sensors[number].node, 2]
         if abs(at - part.depth) > 1.0:
             yield "sensor", {"number": number, "part": part, "at": at}
-
-
-def _bridle_excess(cage: Cage) -> list[float]:
-    """How much longer each bridle is than its pretension stretches it [m]."""
-    line, span = cage.bridles, _bridle_spans(cage)
-    give = (span - line.chain_length) / line.rope_axial_stiffness
-    stretch = line.pretension * (give + line.chain_length / line.chain_axial_stiffness)
-    return (np.array(line.length_offset) - stretch).tolist()
 
 
 def _is_farmed(latitude: float | None) -> bool:

@@ -1,4 +1,4 @@
-"""Nodes, edges and panels of a net of rings × spokes and a tip."""
+"""Nodes, edges and panels of a net of rings × spokes and a tip; the volume in any net's panels."""
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -7,7 +7,6 @@ from seacage.cage._parts import Mesh
 
 # A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer
 SNAPPED = 0.01
-
 
 # Of the even one: the narrowest sector that spokes are moved to for the sake of bridles [-]
 LEAST_SECTOR = 0.4
@@ -50,14 +49,8 @@ def node_positions(
     cone = (mesh.tip_depth - depth) / (mesh.tip_depth - mesh.cylinder_depth)
     ring_radius = radius * np.minimum(1.0, cone)
     angle = angles - np.deg2rad(heading)
-    rings = np.stack(
-        [
-            ring_radius[:, None] * np.cos(angle),
-            ring_radius[:, None] * np.sin(angle),
-            np.repeat(-depth[:, None], mesh.spokes, axis=1),
-        ],
-        axis=-1,
-    )
+    east, north = ring_radius[:, None] * np.cos(angle), ring_radius[:, None] * np.sin(angle)
+    rings = np.stack([east, north, np.repeat(-depth[:, None], mesh.spokes, axis=1)], axis=-1)
     return np.vstack([rings.reshape(-1, 3), [[0.0, 0.0, -mesh.tip_depth]]])
 
 
@@ -82,3 +75,34 @@ def panels(rings: int, spokes: int) -> Int[np.ndarray, "panel 4"]:
     tip = np.full(spokes, rings * spokes)
     triangles = np.stack([node[-1], tip, beside[-1], beside[-1]], axis=-1)
     return np.concatenate([quadrilaterals.reshape(-1, 4), triangles])
+
+
+def enclosed_volume(
+    node_position: Float[np.ndarray, "*case node 3"],
+    panels: Int[np.ndarray, "panel 4"],
+    collar: Int[np.ndarray, " spoke"],
+) -> Float[np.ndarray, "*case"]:
+    """Volume inside the net, closed by the polygon of the collar [m3].
+
+    By the divergence theorem over triangles; each quadrilateral is the mean of its two
+    splits, so that the answer does not depend on how it is cut.
+
+    ``node_position``: [m]. ``panels``: corners counter-clockwise seen from outside. ``collar``:
+    nodes of the uppermost ring, counter-clockwise seen from above.
+    """
+    # Measured from the collar's centre, the fan that closes the top spans no volume. In C order,
+    # so that a case is summed in the same order alone as in company.
+    centre = node_position[..., collar, :].mean(axis=-2, keepdims=True)
+    axes = np.ascontiguousarray(np.moveaxis(node_position - centre, -1, 0))
+    a, b, c, d = np.moveaxis(np.take(axes, panels.T, axis=-1), -2, 0)
+    # One split is (d - b) · (a × c), the other (a - c) · (b × d), each six times its volume.
+    twice = _triple_product(a - c, b, d) - _triple_product(b - d, a, c)
+    return np.asarray(twice.sum(axis=-1) / 12.0)
+
+
+def _triple_product(
+    u: Float[np.ndarray, "3 *n"], v: Float[np.ndarray, "3 *n"], w: Float[np.ndarray, "3 *n"]
+) -> Float[np.ndarray, "*n"]:
+    # Written out, as NumPy's cross product takes most of its time to see what it was given.
+    (ux, uy, uz), (vx, vy, vz), (wx, wy, wz) = u, v, w
+    return ux * (vy * wz - vz * wy) + uy * (vz * wx - vx * wz) + uz * (vx * wy - vy * wx)

@@ -16,35 +16,20 @@ _NUMBERS = ("breaking_load", "capacity", "pretension", "tn_slope", "tn_load")  #
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MooringLines:
-    """Ropes and chains of a mooring, the bridles first.
-
-    Parameters
-    ----------
-    names, kinds
-        Such as "anchor-1" and "bridle", "frame line", "anchor line", "buoy line" or a structure's
-        "line" and "tie".
-    breaking_load
-        NaN where it is not known [N].
-    capacity
-        Breaking load over material factor; NaN where it is not known [N].
-    pretension
-        In still water; NaN where it is not known [N].
-    tn_slope
-        m of the T–N curve N · R^m = K, R the range of tension over breaking load; NaN where it is
-        not known [-].
-    tn_load
-        Range of which a single cycle would use up the life, breaking load · K^(1/m); NaN where it
-        is not known [N].
+    """Ropes and chains of a mooring, the bridles first; NaN where a number is not known.
 
     Source: API RP 2SK (2005), fatigue analysis: T–N curves.
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # such as "anchor-1"
+    # "bridle", "frame line", "anchor line", "buoy line" or a structure's "line" and "tie"
     kinds: tuple[str, ...]
-    breaking_load: Float[np.ndarray, " line"]
-    capacity: Float[np.ndarray, " line"]
-    pretension: Float[np.ndarray, " line"]
+    breaking_load: Float[np.ndarray, " line"]  # [N]
+    capacity: Float[np.ndarray, " line"]  # breaking load over material factor [N]
+    pretension: Float[np.ndarray, " line"]  # in still water [N]
+    # m of the T–N curve N · R^m = K, R the range of tension over breaking load [-]
     tn_slope: Float[np.ndarray, " line"]
+    # Range of which a single cycle would use up the life, breaking load · K^(1/m) [N]
     tn_load: Float[np.ndarray, " line"]
 
     @classmethod

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import Field, dataclass, field, fields
+from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -36,7 +37,10 @@ def check_bounds(part: Any, where: str) -> None:
 
 
 def check_bound(parameter: Field[Any], value: Any, where: str) -> None:
-    """Refuse a parameter's value, or one of its values, outside the bounds declared for it."""
+    """Refuse a parameter's value, or one of its values, outside what is declared for it."""
+    if (allowed := parameter.metadata.get("allowed")) and value not in allowed:
+        choices = ", ".join(map(repr, sorted(allowed)))
+        raise InputError(f"{where}: {parameter.name} = {value!r} must be one of {choices}.")
     for number in value if isinstance(value, tuple) else (value,):
         if not isinstance(number, int | float):
             continue
@@ -49,51 +53,47 @@ def check_bound(parameter: Field[Any], value: Any, where: str) -> None:
             )
 
 
-def _intercept() -> Any:
-    return quantity(
-        "", "K of N R^m = K, R the range of tension over breaking load", above=True, default=None
-    )
+_known = partial(quantity, above=True, default=None)
+_intercept = partial(_known, "", "K of N R^m = K, R the range of tension over breaking load")
+_rope_breaking_load = partial(_known, "n", "least of the rope and what it is joined by")
+_rope_factor = partial(quantity, "", "divides the breaking load", low=1.0, default=None)
 
 
-def _rope_breaking_load() -> Any:
-    return quantity("n", "least of the rope and what it is joined by", above=True, default=None)
-
-
-def _rope_factor() -> Any:
-    return quantity("", "divides the breaking load", low=1.0, default=None)
-
-
-def _check_curve(where: str, part: Any, prefix: str) -> None:
-    """Refuse half of a T-N curve, or half of a capacity."""
-    for key, needed in (
-        ("tn_intercept", "tn_slope"),
-        ("tn_intercept", "breaking_load_n"),
-        ("breaking_load_n", "material_factor"),
-        ("material_factor", "breaking_load_n"),
-    ):
-        own, other = (getattr(part, prefix + one.removesuffix("_n")) for one in (key, needed))
-        if own is not None and other is None:
-            raise InputError(
-                f"Cage, {where}: {prefix}{key} = {own:g} says nothing without {prefix}{needed}. "
-                "Give both, or neither."
-            )
-
-
-class _Part:
-    """A part checks its numbers against the bounds it declares."""
+class Part:
+    """A part checks its values against what it declares of them."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        check_bounds(self, f"Cage, {type(self).__name__}")
+        check_bounds(self, self._where)
         self._check()
+
+    @property
+    def _where(self) -> str:
+        """Name of the part in errors."""
+        return f"Cage, {type(self).__name__}"
 
     def _check(self) -> None:
         return  # most parts have bounds alone
 
+    def _check_curve(self, prefix: str) -> None:
+        """Refuse half of a T-N curve, or half of a capacity."""
+        for key, needed in (
+            ("tn_intercept", "tn_slope"),
+            ("tn_intercept", "breaking_load_n"),
+            ("breaking_load_n", "material_factor"),
+            ("material_factor", "breaking_load_n"),
+        ):
+            own, other = (getattr(self, prefix + one.removesuffix("_n")) for one in (key, needed))
+            if own is not None and other is None:
+                raise InputError(
+                    f"{self._where}: {prefix}{key} = {own:g} says nothing without "
+                    f"{prefix}{needed}. Give both, or neither."
+                )
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Mesh(_Part):
+class Mesh(Part):
     """How the net is cut into nodes: rings × spokes and a tip."""
 
     spokes: int = quantity("", "spokes round the cage, the first one east", low=3)
@@ -136,7 +136,7 @@ class Mesh(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Collar(_Part):
+class Collar(Part):
     """The floating ring: equal pipes side by side."""
 
     radius: float = quantity("m", "from the centre to the net's upper edge", above=True)
@@ -178,7 +178,7 @@ class Collar(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Netting(_Part):
+class Netting(Part):
     """Knotless square mesh, and what grows on it."""
 
     twine_diameter: float = quantity("m", "diameter of a twine", above=True)
@@ -219,7 +219,7 @@ class Netting(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ropes(_Part):
+class Ropes(Part):
     """Vertical ropes sewn on the meridians; they add stiffness, not drag."""
 
     axial_stiffness: float = quantity("n", "EA of one rope; 0 for a net without ropes")
@@ -227,7 +227,7 @@ class Ropes(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SinkerTube(_Part):
+class SinkerTube(Part):
     """The weighted ring; the low fidelity carries it on the cylinder's lower edge."""
 
     weight: float = quantity("n_m", "submerged weight")
@@ -253,14 +253,14 @@ class SinkerTube(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tip(_Part):
+class Tip(Part):
     """The weight in the cone's tip."""
 
     weight: float = quantity("n", "submerged weight")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Frame(_Part):
+class Frame(Part):
     """The square mooring frame; in the low fidelity its corners sit on linear springs.
 
     A frame of another shape gives its corners instead of a side; the first line is in files,
@@ -306,7 +306,7 @@ class Frame(_Part):
     )
 
     def _check(self) -> None:
-        _check_curve("Frame", self, "rope_")
+        self._check_curve("rope_")
         east, north = self.corners_east, self.corners_north
         if (self.side is None) == (east is None) or (east is None) != (north is None):
             raise InputError(
@@ -349,7 +349,7 @@ def _turning(vectors: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, " row"]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class AnchorLines(_Part):
+class AnchorLines(Part):
     """Two lines from each frame corner to the sea bed, rope above chain."""
 
     per_corner: int = quantity("", "lines from a corner")
@@ -367,11 +367,11 @@ class AnchorLines(_Part):
     rope_material_factor: float | None = _rope_factor()
 
     def _check(self) -> None:
-        _check_curve("AnchorLines", self, "rope_")
+        self._check_curve("rope_")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bridles(_Part):
+class Bridles(Part):
     """Lines from the nearest frame corner to the collar: rope and chain in series."""
 
     bearings: tuple[float, ...] = quantity("deg", "compass bearing of each collar end, heading 0")
@@ -397,7 +397,7 @@ class Bridles(_Part):
     tn_intercept: float | None = _intercept()
 
     def _check(self) -> None:
-        _check_curve("Bridles", self, "")
+        self._check_curve("")
         if not self.bearings:
             raise InputError("Cage, Bridles: bearings_deg is empty. Give at least one bridle.")
         if len(self.length_offset) != len(self.bearings):
@@ -408,7 +408,7 @@ class Bridles(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Site(_Part):
+class Site(Part):
     """The water around the cage."""
 
     water_depth: float = quantity("m", "still water to sea bed", above=True)
@@ -434,7 +434,7 @@ class Site(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ShackleEntry(_Part):
+class ShackleEntry(Part):
     """A load shackle, as a cage file names it."""
 
     name: str = field(metadata={"meaning": "the name of its stream"})
@@ -442,7 +442,7 @@ class ShackleEntry(_Part):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DepthSensorEntry(_Part):
+class DepthSensorEntry(Part):
     """A depth sensor on the net, as a cage file names it; it sits on the nearest node."""
 
     name: str = field(metadata={"meaning": "the name of its stream"})

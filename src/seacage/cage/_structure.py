@@ -10,10 +10,10 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage._cage import Cage, DepthSensor
+from seacage.cage._graph import enclosed_volume
 from seacage.cage._parts import Site, check_bounds, quantity
 from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._toml import TomlFile
-from seacage.cage._volume import enclosed_volume
 from seacage.conventions import InputError, parse_toml
 
 _Part = TypeVar("_Part", bound=Named)
@@ -127,11 +127,8 @@ class Structure(TomlFile):
         """
         net, first = self.net[index], self._starts["net"][index]
         inner = first + np.arange((net.rows - 1) * self.spokes).reshape(-1, self.spokes)
-        last = (
-            self.ring_nodes(net.lower)
-            if net.lower
-            else np.full(self.spokes, first + (net.rows - 1) * self.spokes)
-        )
+        centre = np.full(self.spokes, first + inner.size)
+        last = self.ring_nodes(net.lower) if net.lower else centre
         return np.vstack([self.ring_nodes(net.upper), inner, last])
 
     def tie_nodes(self, index: int) -> Int[np.ndarray, "tie node"]:
@@ -199,7 +196,9 @@ class Structure(TomlFile):
     def edges(self) -> Int[np.ndarray, "edge 2"]:
         """Pairs of neighbouring nodes: rings, nets, ties, lines."""
         around = [_loop_edges(self.ring_nodes(index)) for index in range(len(self.ring))]
-        nets = [self._net_edges(index) for index in range(len(self.net))]
+        nets = list[Int[np.ndarray, "edge 2"]]()
+        for nodes in map(self.net_nodes, range(len(self.net))):
+            nets += [*map(_loop_edges, nodes[1:-1]), _chain_edges(nodes.T)]
         ties = [_chain_edges(self.tie_nodes(index)) for index in range(len(self.tie))]
         lines = [_chain_edges(self.line_nodes(index)[None]) for index in range(len(self.line))]
         return np.concatenate([*around, *nets, *ties, *lines])
@@ -300,11 +299,6 @@ class Structure(TomlFile):
 
     def _depth(self, ring: int) -> float:
         return self.ring[ring].depth
-
-    def _net_edges(self, index: int) -> Int[np.ndarray, "edge 2"]:
-        nodes = self.net_nodes(index)
-        inner = [_loop_edges(level) for level in nodes[1:-1]]
-        return np.concatenate([*inner, _chain_edges(nodes.T)])
 
     def _place(self, where: str, line: str) -> int:
         """The node of a point, of an anchor or of a ring's spoke."""

@@ -1,10 +1,10 @@
 """The parts of a structure of any topology, each with its parameters, units and bounds."""
 
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field
 from typing import Any
 
-from seacage.cage._parts import check_bounds, quantity
+from seacage.cage._parts import Part, quantity
 from seacage.conventions import WATER_DENSITY, InputError
 
 PIPE, ROPE = "pipe", "rope"
@@ -22,30 +22,15 @@ def _choice(meaning: str, default: str, *others: str) -> Any:
     return field(metadata={"meaning": meaning, "allowed": allowed}, default=default)
 
 
-class Named:
-    """A part with a name, which checks its numbers and says which part is wrong."""
+class Named(Part):
+    """A part with a name, which says which part is wrong."""
 
     __slots__ = ()
     name: str
 
-    def __post_init__(self) -> None:
-        where = f"Structure, {type(self).__name__} {self.name!r}"
-        check_bounds(self, where)
-        _check_choices(self, where)
-        self._check()
-
-    def _check(self) -> None:
-        return  # most parts have bounds and choices alone
-
-
-def _check_choices(part: Any, where: str) -> None:
-    for parameter in fields(part):
-        value, allowed = getattr(part, parameter.name), parameter.metadata.get("allowed")
-        if allowed and value not in allowed:
-            raise InputError(
-                f"{where}: {parameter.name} = {value!r} must be one of "
-                f"{', '.join(map(repr, sorted(allowed)))}."
-            )
+    @property
+    def _where(self) -> str:
+        return f"Structure, {type(self).__name__} {self.name!r}"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +86,7 @@ class Twine(Named):
     def _check(self) -> None:
         if self.diameter >= self.half_mesh:
             raise InputError(
-                f"Structure, Twine {self.name!r}: diameter_m = {self.diameter:g} leaves no hole "
+                f"{self._where}: diameter_m = {self.diameter:g} leaves no hole "
                 f"in half_mesh_m = {self.half_mesh:g}. Check both."
             )
 
@@ -143,7 +128,7 @@ class Net(Named):
     def _check(self) -> None:
         if self.upper == self.lower:
             raise InputError(
-                f"Structure, Net {self.name!r}: upper and lower are both {self.upper!r}. Name two "
+                f"{self._where}: upper and lower are both {self.upper!r}. Name two "
                 "rings, or leave lower empty for a disc."
             )
 
@@ -166,7 +151,7 @@ class Tie(Named):
     def _check(self) -> None:
         if self.kind != ROPES and self.segments != 1:
             raise InputError(
-                f"Structure, Tie {self.name!r}: segments = {self.segments}, but {self.kind} are "
+                f"{self._where}: segments = {self.segments}, but {self.kind} are "
                 "pinned at their ends and would fold. Give them one."
             )
 
@@ -186,8 +171,7 @@ class Point(Named):
         _check_position(self.name, self.position)
         if self.displaced > 0.0 and self.height == 0.0:
             raise InputError(
-                f"Structure, Point {self.name!r}: displaced_m3 = {self.displaced:g} needs a "
-                "height_m above 0."
+                f"{self._where}: displaced_m3 = {self.displaced:g} needs a height_m above 0."
             )
 
 

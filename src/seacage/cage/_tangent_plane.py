@@ -45,7 +45,11 @@ class TangentPlane:
         position = self._near(position)
         latitude = np.full(len(position), self.latitude)
         longitude = np.full(len(position), self.longitude)
-        meridian, parallel = _radii(self.latitude)
+        phi = math.radians(self.latitude)
+        root = math.sqrt(1.0 - _ECCENTRICITY2 * math.sin(phi) ** 2)
+        # Radii of the meridian's curve and of the parallel [m]
+        meridian = EQUATOR_RADIUS * (1.0 - _ECCENTRICITY2) / root**3
+        parallel = EQUATOR_RADIUS * math.cos(phi) / root
         for _ in range(_ROUNDS):
             miss = position - self.local(latitude, longitude, -position[:, 2])
             latitude = latitude + np.rad2deg(miss[:, 1] / meridian)
@@ -56,13 +60,9 @@ class TangentPlane:
     def _axes(self) -> Float[np.ndarray, "3 3"]:
         """East, north and up at the centre, in the Earth's own axes."""
         phi, lam = math.radians(self.latitude), math.radians(self.longitude)
-        return np.array(
-            [
-                [-math.sin(lam), math.cos(lam), 0.0],
-                [-math.sin(phi) * math.cos(lam), -math.sin(phi) * math.sin(lam), math.cos(phi)],
-                [math.cos(phi) * math.cos(lam), math.cos(phi) * math.sin(lam), math.sin(phi)],
-            ]
-        )
+        (sin_phi, cos_phi), (sin_lam, cos_lam) = ((math.sin(a), math.cos(a)) for a in (phi, lam))
+        east, north = [-sin_lam, cos_lam, 0.0], [-sin_phi * cos_lam, -sin_phi * sin_lam, cos_phi]
+        return np.array([east, north, [cos_phi * cos_lam, cos_phi * sin_lam, sin_phi]])
 
     def _near(self, position: Point3) -> Point3:
         far = np.hypot(position[:, 0], position[:, 1])
@@ -78,18 +78,5 @@ class TangentPlane:
 def _on_ellipsoid(latitude: PerPoint, longitude: PerPoint) -> Point3:
     phi, lam = np.deg2rad(latitude), np.deg2rad(longitude)
     across = EQUATOR_RADIUS / np.sqrt(1.0 - _ECCENTRICITY2 * np.sin(phi) ** 2)
-    return np.column_stack(
-        [
-            across * np.cos(phi) * np.cos(lam),
-            across * np.cos(phi) * np.sin(lam),
-            across * (1.0 - _ECCENTRICITY2) * np.sin(phi),
-        ]
-    )
-
-
-def _radii(latitude: float) -> tuple[float, float]:
-    """Of the meridian's curve and of the parallel [m]."""
-    phi = math.radians(latitude)
-    root = math.sqrt(1.0 - _ECCENTRICITY2 * math.sin(phi) ** 2)
-    meridian = EQUATOR_RADIUS * (1.0 - _ECCENTRICITY2) / root**3
-    return meridian, EQUATOR_RADIUS * math.cos(phi) / root
+    parallel, up = across * np.cos(phi), across * (1.0 - _ECCENTRICITY2) * np.sin(phi)
+    return np.column_stack([parallel * np.cos(lam), parallel * np.sin(lam), up])

@@ -1,7 +1,7 @@
 """Many simulations, planned, run and labelled; and the virtual field."""
 
+from seacage.campaigns._buoy_records import generated_current, generated_waves, waves_at_site
 from seacage.campaigns._cases import Simulator
-from seacage.campaigns._current import generated_current
 from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._status import CampaignStatus, campaign_status
@@ -10,7 +10,6 @@ from seacage.campaigns._virtual_field._field import VirtualField, virtual_field,
 from seacage.campaigns._virtual_field._timetable import Timetable
 from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shapes
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.campaigns._waves import generated_waves, waves_at_site
 
 __all__ = [
     "CampaignStatus",

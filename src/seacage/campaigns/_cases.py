@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Float
 
-from seacage.cage import Cage, Structure, cage_or_structure
+from seacage.cage import cage_or_structure
 from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, SeacageError, has_answer
 from seacage.dynamics import (
@@ -27,6 +27,7 @@ from seacage.ocean import SeaState
 # Cases computed and written at a time: enough to fill the kernel's lanes, few enough to lose
 _BLOCK = {"simulate": 16, "settle": 32}
 
+_cage = lru_cache(maxsize=4)(cage_or_structure)
 _PIECE = 60.0  # least length of the pieces that a case on a mooring of its own is simulated in [s]
 
 
@@ -230,8 +231,3 @@ def _moment(history: History) -> Float[np.ndarray, "coordinate coordinate"]:
     for case in np.flatnonzero(has_answer(history.result)):
         total += history.second_moment[case]
     return total.astype(np.float32)
-
-
-@lru_cache(maxsize=4)
-def _cage(toml: str) -> Cage | Structure:
-    return cage_or_structure(toml)

@@ -19,13 +19,6 @@ Task = TypeVar("Task")
 Answer = TypeVar("Answer")
 
 
-def _available_cores() -> int:
-    """Cores that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def map_tasks(
     work: Callable[[Task], Answer],
     tasks: Sequence[Task],
@@ -42,7 +35,8 @@ def map_tasks(
     ``workers``: processes at most; None for one per available core. ``progress``: called now and
     then, while an answer is waited for, with the sum that the tasks report by ``report_progress``.
     """
-    workers = min(workers or _available_cores(), len(tasks))
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    workers = min(workers or cores or 1, len(tasks))
     spawn = multiprocessing.get_context("spawn")
     board = spawn.RawArray("d", max(len(tasks), 1))
     if workers <= 1:

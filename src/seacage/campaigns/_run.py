@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 from jaxtyping import Int
 
+from seacage import records
 from seacage.cage import Cage, Structure, mooring_lines
 from seacage.campaigns._cases import CaseBlock, Simulator, answer_block, software_version
 from seacage.campaigns._cluster import map_on_cluster
@@ -18,15 +19,7 @@ from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.dynamics import PHYSICS, SPRINGS, Mooring, MovingLaw
-from seacage.records import (
-    NOT_RUN,
-    CampaignRecord,
-    campaign_results,
-    create_campaign,
-    finish_campaign,
-    read_campaign,
-    write_cases,
-)
+from seacage.records import CampaignRecord
 
 # Attributes that make two campaigns the same, and how people call them
 _IDENTITY = {
@@ -112,7 +105,7 @@ def run_campaign(
         parted=tuple(parted),
     )
     run_share(cage, plan, out, by=simulator, workers=workers, cluster=cluster, progress=progress)
-    return read_campaign(out)
+    return records.read_campaign(out)
 
 
 def run_share(
@@ -143,24 +136,24 @@ def run_share(
     result, size = _results_so_far(store, attributes, cases=len(plan), block=by.block)
     firsts = _firsts(share, cases=len(plan), size=size)
     cases = [case for first in firsts for case in range(len(plan))[first : first + size]]
-    blocks = _blocks(cage, plan, by, size, [at for at in firsts if result[at] == NOT_RUN])
-    done = sum(int(result[case]) != NOT_RUN for case in cases)
+    blocks = _blocks(cage, plan, by, size, [at for at in firsts if result[at] == records.NOT_RUN])
+    done = sum(int(result[case]) != records.NOT_RUN for case in cases)
     report = progress or no_progress
     report("campaign", done, len(cases))
     ends = map_tasks(answer_block, blocks, workers=workers)
     if cluster is not None and blocks:
         ends = map_on_cluster(answer_block, blocks, address=cluster)
     with closing(ends) as finished:
-        for block, answers in finished:
+        for block, found in finished:
             if not store.exists():  # a cage or a law that cannot be run leaves no store
                 _create(store, cage, plan, by, attributes)
                 _results_so_far(store, attributes, cases=len(plan), block=by.block)
-            spent, moment = answers.core_seconds, answers.moment
-            write_cases(store, block.first, answers.values, moment=moment, core_seconds=spent)
+            spent, moment = found.core_seconds, found.moment
+            records.write_cases(store, block.first, found.values, moment=moment, core_seconds=spent)
             done += len(block.seas)
             report("campaign", done, len(cases))
     if store.exists():
-        finish_campaign(store)
+        records.finish_campaign(store)
 
 
 def campaign_key(cage: Cage | Structure, plan: Plan, by: Simulator) -> str:
@@ -191,8 +184,8 @@ def _results_so_far(
 ) -> tuple[Int[np.ndarray, " case"], int]:
     """Results so far and the block size of a store, if it holds this campaign."""
     if not store.exists():
-        return np.full(cases, NOT_RUN), block
-    found, result, size = campaign_results(store)
+        return np.full(cases, records.NOT_RUN), block
+    found, result, size = records.campaign_results(store)
     other = [name for key, name in _IDENTITY.items() if found.get(key) != identity.get(key)]
     if other:
         raise InputError(
@@ -233,7 +226,7 @@ def _create(
     store: Path, cage: Cage | Structure, plan: Plan, by: Simulator, attributes: Mapping[str, Any]
 ) -> None:
     waves, moorings = _seeds(plan).T.tolist()
-    create_campaign(
+    records.create_campaign(
         store,
         seas=plan.seas,
         nodes=cage.node_count,

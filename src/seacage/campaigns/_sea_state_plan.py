@@ -315,13 +315,8 @@ def _range(name: str, given: Sequence[float], unit: str, top: float = math.inf) 
 
 
 def _sea(speed: float, to: float, hs: float, ratio: float, wave_from: float) -> SeaState:
-    return SeaState(
-        current_speed=speed,
-        current_to=to,
-        hs=hs,
-        tp=5.0 * ratio * math.sqrt(hs),
-        wave_from=wave_from,
-    )
+    tp = 5.0 * ratio * math.sqrt(hs)
+    return SeaState(current_speed=speed, current_to=to, hs=hs, tp=tp, wave_from=wave_from)
 
 
 def _put_on_corners(share: np.ndarray, every: int, seed: int) -> None:

@@ -1,6 +1,6 @@
 """Names, units, axes, errors and codes that every room shares."""
 
-from seacage.conventions._codes import RESULTS, Flag, Result, gravest, has_answer
+from seacage.conventions._codes import RESULTS, Flag, Origin, Result, gravest, has_answer
 from seacage.conventions._constants import GRAVITY, WATER_DENSITY, WATER_VISCOSITY, YEAR
 from seacage.conventions._directions import compass, fold_degrees, towards
 from seacage.conventions._durations import count_times, duration_text
@@ -21,7 +21,6 @@ from seacage.conventions._intake import (
     read_packaged_table,
     read_text,
 )
-from seacage.conventions._origin import Origin
 from seacage.conventions._progress import Progress, no_progress
 from seacage.conventions._rows import Rows
 

@@ -1,7 +1,7 @@
-"""Result codes of a solve and quality flags of a sample."""
+"""Result codes of a solve, quality flags of a sample, and origins of numbers."""
 
 from collections.abc import Mapping
-from enum import IntEnum
+from enum import IntEnum, StrEnum
 
 import numpy as np
 from jaxtyping import Bool, Int
@@ -51,3 +51,11 @@ class Flag(IntEnum):
     SUSPECT = 3
     FAIL = 4
     MISSING = 9
+
+
+class Origin(StrEnum):
+    """How a record or a table row was made; every table row and figure says which."""
+
+    MEASURED = "measured"
+    COMPUTED = "computed"
+    VIRTUAL_FIELD = "virtual field"

@@ -8,8 +8,7 @@ from seacage.figures._fidelity import Panel, fouling_figure, gain_figure, left_f
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
-from seacage.figures._shape_cases import shape_cases_figure
-from seacage.figures._shape_error import shape_error_figure
+from seacage.figures._shape_error import shape_cases_figure, shape_error_figure
 from seacage.figures._shape_views import ShapeView, shape_views_figure
 from seacage.figures._states import states_figure
 from seacage.figures._style import svg_text, write_figure

@@ -5,19 +5,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float, Int, UInt8
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, towards
-from seacage.figures._gif import Gif
 from seacage.figures._style import FAINT, INK, MULTI, MUTED, caption, style
+from seacage.figures._types import Axes, Collection, Figure
 from seacage.ocean import SeaState, Waves, surface_elevation
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import Collection
     from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
 
 _SIZE = (7.2, 4.25)  # of the picture [inch]; its width in pixels is the caller's
@@ -186,6 +183,48 @@ class _Scene:
         return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
 
 
+class Gif:
+    """A GIF of few, chosen colours, so that it stays small and flat areas stay flat.
+
+    ``colours``: as ``#rrggbb``, at most 255; each pixel takes the nearest. ``seconds``: between
+    pictures. A GIF counts hundredths; pictures are spread so that the whole keeps time.
+    """
+
+    def __init__(self, *, colours: list[str], seconds: float) -> None:
+        from PIL import Image
+
+        if seconds < 0.02:
+            raise InputError(
+                f"Gif: a picture every {seconds:g} s; browsers slow down below 0.02 s. "
+                "Draw fewer pictures a second."
+            )
+        self._palette = Image.new("P", (1, 1))
+        self._palette.putpalette(bytes.fromhex("".join(one.removeprefix("#") for one in colours)))
+        self._seconds = seconds
+        self._pictures: list[Image.Image] = []
+
+    def add(self, pixels: UInt8[np.ndarray, "row column 3"]) -> None:
+        """Append one picture."""
+        from PIL import Image
+
+        picture = Image.fromarray(pixels)
+        self._pictures.append(picture.quantize(palette=self._palette, dither=Image.Dither.NONE))
+
+    def write(self, path: Path) -> None:
+        """Write the pictures, looping for ever."""
+        first, *others = self._pictures
+        ends = np.round(100.0 * self._seconds * np.arange(len(self._pictures) + 1)).astype(int)
+        first.save(
+            path,
+            format="GIF",
+            save_all=True,
+            append_images=others,
+            duration=(10 * np.diff(ends)).tolist(),
+            loop=0,
+            optimize=True,
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Eye:
     """How a point in space is seen: a view from afar, the current going to the right."""
@@ -200,12 +239,9 @@ class _Eye:
         along = towards(np.array(1.0), np.array(current_to))
         away = np.array([-along[1], along[0]])
         sine, cosine = np.sin(_TILT), np.cos(_TILT)
-        return cls(
-            view=np.array([[*along, 0.0], [*(sine * away), cosine]]),
-            toward=np.array([*(-cosine * away), sine]),
-            along=along,
-            away=away,
-        )
+        view = np.array([[*along, 0.0], [*(sine * away), cosine]])
+        toward = np.array([*(-cosine * away), sine])
+        return cls(view=view, toward=toward, along=along, away=away)
 
     def project(self, position: Float[np.ndarray, "*n 3"]) -> Float[np.ndarray, "*n 2"]:
         return position @ self.view.T
@@ -214,7 +250,7 @@ class _Eye:
 class _Water:
     """The water's surface as a band from a far to a near crest, and the water below it."""
 
-    def __init__(self, axes: "Axes", eye: _Eye, motion: Motion, reach: float) -> None:
+    def __init__(self, axes: Axes, eye: _Eye, motion: Motion, reach: float) -> None:
         self._eye, self._motion = eye, motion
         along = np.linspace(-reach - 1.0, reach + 1.0, 96)
         rows = [reach * far for far in (0.8, 0.0, -0.8)]
@@ -241,7 +277,7 @@ class _Water:
         self._body.set_xy(np.vstack([near, ends]))
 
 
-def _frame_axes(axes: "Axes", reach: float, bottom: float) -> None:
+def _frame_axes(axes: Axes, reach: float, bottom: float) -> None:
     """Metres as wide as high, the deepest point at rest just inside."""
     axes.set_axis_off()
     high = 2.0 * reach * (0.73 * _SIZE[1]) / _SIZE[0]
@@ -258,7 +294,7 @@ def _patches(cage: Cage) -> Int[np.ndarray, "patch corner"]:
 
 
 def _colour(
-    axes: "Axes", artists: "Collection", colours: tuple[str, ...], levels: int, largest: float
+    axes: Axes, artists: Collection, colours: tuple[str, ...], levels: int, largest: float
 ) -> None:
     """Add artists that take one of so many colours, from zero to the largest value."""
     from matplotlib.colors import BoundaryNorm
@@ -277,7 +313,7 @@ def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
     return LinearSegmentedColormap.from_list("seacage", list(colours), N=levels)
 
 
-def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
+def _draw_frame(axes: Axes, cage: Cage, eye: _Eye) -> None:
     corner = eye.project(cage.corner_position)
     for side in range(len(corner)):
         ends = corner[[side, (side + 1) % len(corner)]]
@@ -285,7 +321,7 @@ def _draw_frame(axes: "Axes", cage: Cage, eye: _Eye) -> None:
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4.5, zorder=4.5)
 
 
-def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
+def _write_head(axes: Axes, cage: Cage, motion: Motion) -> None:
     sea = motion.sea
     waves = f"waves Hs {sea.hs:.3g} m, Tp {sea.peak_period:.3g} s" if sea.hs else "no waves"
     about = f"current {sea.current_speed:.3g} m/s to the right, {waves}, {motion.origin}"
@@ -293,7 +329,7 @@ def _write_head(axes: "Axes", cage: Cage, motion: Motion) -> None:
     caption(axes, about, (0.988, 0.985), va="top", ha="right", color=MUTED)
 
 
-def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
+def _write_legend(axes: Axes, net: Collection, lines: Collection) -> None:
     """Two slim colour bars in the corners of the deep water."""
     for left, artist, unit, label, scale in (
         (0.03, net, "m", "Net: displacement from rest", 1.0),
@@ -309,7 +345,7 @@ def _write_legend(axes: "Axes", net: "Collection", lines: "Collection") -> None:
         caption(bar, f"{most:.0f} {unit}", (1.0, -0.5), ha="right", va="top", fontsize=7.5)
 
 
-def _trace(figure: "Figure", cage: Cage, motion: Motion, bridle: int) -> "tuple[Line2D, Line2D]":
+def _trace(figure: Figure, cage: Cage, motion: Motion, bridle: int) -> "tuple[Line2D, Line2D]":
     """One bridle's tension: all of it faintly, what has been strongly, now as a dot."""
     axes = figure.add_axes((0.075, 0.085, 0.905, 0.15))
     since = motion.time - motion.time[0]

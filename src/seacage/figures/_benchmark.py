@@ -2,16 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.figures import _style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,7 +26,7 @@ def error_figure(
     *,
     ours: Sequence[int],  # which of the methods are ours, the first of them the one to look at
     label: str = "Root mean square error",
-) -> "Figure":
+) -> Figure:
     """Error of each method on each problem: a dot per seed, and a mark at the mean."""
     with _style.style():
         figure, panels = _grid(methods, contests, label)
@@ -50,7 +46,7 @@ def coverage_figure(
     *,
     ours: Sequence[int],
     wanted: tuple[float, float],
-) -> "Figure":
+) -> Figure:
     """Share of the truth inside 95 % intervals, by method and problem.
 
     ``methods``, ``contests``, ``ours``: as for the errors. ``wanted``: the band that is promised,
@@ -75,15 +71,14 @@ def cost_figure(
     costs: Mapping[str, Float[np.ndarray, " method"]],
     *,
     ours: Sequence[int],
-) -> "Figure":
+) -> Figure:
     """What each method takes, and how many times ours that is.
 
     ``methods`` and ``ours``: as for the errors. ``costs``: by what is done: one core's time [s];
     NaN where a method did not do it.
     """
     place = np.arange(len(methods))
-    with _style.style():
-        figure = _style.blank_figure(10.0, 0.9 + 0.27 * len(methods))
+    with _style.page(10.0, 0.9 + 0.27 * len(methods)) as figure:
         panels = figure.subplots(1, len(costs), sharey=True, squeeze=False)[0]
         for axes, (title, cost) in zip(panels, costs.items(), strict=True):
             done = np.isfinite(cost)
@@ -105,7 +100,7 @@ def cost_figure(
 
 def _grid(
     methods: Sequence[str], contests: Sequence[Contest], label: str
-) -> "tuple[Figure, list[Axes]]":
+) -> tuple[Figure, list[Axes]]:
     """One panel for each contest, with what lies along x."""
     figure, panels = _style.panel_grid(len(contests), 0.8 + 0.2 * len(methods), sharey=True)
     for axes, contest in zip(panels, contests, strict=True):
@@ -116,12 +111,12 @@ def _grid(
     return figure, panels
 
 
-def _name_methods(axes: "Axes", methods: Sequence[str]) -> None:
+def _name_methods(axes: Axes, methods: Sequence[str]) -> None:
     axes.set_yticks(np.arange(len(methods)), methods)
     axes.set_ylim(len(methods) - 0.5, -0.5)
 
 
-def _few_ticks(axes: "Axes", shown: Float[np.ndarray, "*n"]) -> None:
+def _few_ticks(axes: Axes, shown: Float[np.ndarray, "*n"]) -> None:
     """Powers of ten where they are met, else a few plain numbers."""
     from matplotlib.ticker import LogLocator, NullFormatter, StrMethodFormatter
 

@@ -2,18 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import COUNTS, FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.collections import PolyCollection
-    from matplotlib.figure import Figure
+from seacage.figures._style import COUNTS, FIT, INK, LOW, MULTI, SENSOR, head, page
+from seacage.figures._types import Axes, Figure, PolyCollection
 
 _BAND = 1.96
 _HEXAGONS = 42
@@ -54,13 +50,12 @@ class Comparison:
             )
 
 
-def density_figure(comparison: Comparison) -> "Figure":
+def density_figure(comparison: Comparison) -> Figure:
     """Two density scatters, low fidelity and multifidelity against the sensor.
 
     Both share limits and counts; the dashed line is y = x, the red one the best fit.
     """
-    with style():
-        figure = blank_figure(6.6, 3.35)
+    with page(6.6, 3.35) as figure:
         left, right = figure.subplots(1, 2, sharex=True, sharey=True)
         panels = density_panels(left, right, comparison)
         left.legend(loc="lower right", handlelength=1.8)
@@ -71,10 +66,9 @@ def density_figure(comparison: Comparison) -> "Figure":
     return figure
 
 
-def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datetime64) -> "Figure":
+def series_figure(comparison: Comparison, *, start: np.datetime64, end: np.datetime64) -> Figure:
     """The sensor, low fidelity and multifidelity with its 95 % band, from start to end [UTC]."""
-    with style():
-        figure = blank_figure(10.0, 2.55)
+    with page(10.0, 2.55) as figure:
         axes = figure.subplots()
         series_panel(axes, comparison, start=start, end=end)
         head(axes, f"{comparison.sensor}, unseen days", origin=comparison.origin, legend=4)
@@ -85,13 +79,12 @@ def rows_figure(
     comparisons: Sequence[Comparison],  # one for each row
     # Start and end of each row's series [UTC]
     spans: Sequence[tuple[np.datetime64, np.datetime64]],
-) -> "Figure":
+) -> Figure:
     """The paper's figure of some sensors: one row each of two density scatters and a series.
 
     All scatters share the scale of their counts; each row has limits of its own.
     """
-    with style():
-        figure = blank_figure(11.0, 0.75 + 2.6 * len(comparisons))
+    with page(11.0, 0.75 + 2.6 * len(comparisons)) as figure:
         grid = figure.subplots(
             len(comparisons), 3, squeeze=False, width_ratios=[1.0, 1.0, 2.15]
         ).tolist()
@@ -112,16 +105,14 @@ def rows_figure(
     return figure
 
 
-def density_panels(left: "Axes", right: "Axes", comparison: Comparison) -> "list[PolyCollection]":
+def density_panels(left: Axes, right: Axes, comparison: Comparison) -> list[PolyCollection]:
     """Low fidelity and multifidelity against the sensor, beside each other."""
     left.set_ylabel(f"Predicted {comparison.quantity.lower()} [{comparison.unit}]")
-    return [
-        density_panel(left, comparison, multi=False),
-        density_panel(right, comparison, multi=True),
-    ]
+    sides = ((left, False), (right, True))
+    return [density_panel(axes, comparison, multi=multi) for axes, multi in sides]
 
 
-def density_panel(axes: "Axes", comparison: Comparison, *, multi: bool) -> "PolyCollection":
+def density_panel(axes: Axes, comparison: Comparison, *, multi: bool) -> PolyCollection:
     """Prediction against reading, counted in hexagons, with its error and its best fit."""
     predicted = comparison.multi if multi else comparison.low
     error = comparison.multi_mae if multi else comparison.low_mae
@@ -150,7 +141,7 @@ def density_panel(axes: "Axes", comparison: Comparison, *, multi: bool) -> "Poly
 
 
 def series_panel(
-    axes: "Axes", comparison: Comparison, *, start: np.datetime64, end: np.datetime64
+    axes: Axes, comparison: Comparison, *, start: np.datetime64, end: np.datetime64
 ) -> None:
     """What was read and what was predicted, from start to end [UTC]."""
     shown = (comparison.time >= start) & (comparison.time < end)
@@ -188,7 +179,7 @@ def series_panel(
 
 
 def count_bar(
-    figure: "Figure", panels: "Sequence[PolyCollection]", axes: "list[Axes]", **place: Any
+    figure: Figure, panels: Sequence[PolyCollection], axes: list[Axes], **place: Any
 ) -> None:
     """One scale of counts for several scatters, and what its colours mean."""
     highest = max(float(np.max(np.asarray(panel.get_array()))) for panel in panels)
@@ -200,7 +191,7 @@ def count_bar(
 
 
 def _draw_readings(
-    axes: "Axes", sensor: str, time: Shaped[np.ndarray, " t"], reading: Float[np.ndarray, " t"]
+    axes: Axes, sensor: str, time: Shaped[np.ndarray, " t"], reading: Float[np.ndarray, " t"]
 ) -> None:
     """A line, or where it would be denser than print the least and the largest of each stroke."""
     if len(time) <= _MOST_POINTS:
@@ -231,7 +222,7 @@ def _changes(*series: Float[np.ndarray, " t"]) -> Bool[np.ndarray, " t"]:
     return changed
 
 
-def date_axis(axes: "Axes", label: str, **look: Any) -> None:
+def date_axis(axes: Axes, label: str, **look: Any) -> None:
     """Dates along x, as ``ConciseDateFormatter`` writes them."""
     from matplotlib.dates import AutoDateLocator, ConciseDateFormatter
 

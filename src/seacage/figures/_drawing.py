@@ -1,18 +1,15 @@
 """A cage's drawing: from the side and from above, with dimensions and the names of its parts."""
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from seacage.cage import Cage
 from seacage.conventions import towards
 from seacage.figures._net import draw_bridles, draw_frame, draw_ghost, draw_sensors
-from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, head, note, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, aside, head, note, page
+from seacage.figures._types import Axes, Figure
 
 _SIDE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
 _PLAN = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
@@ -27,15 +24,14 @@ _SMALL: dict[str, Any] = {
 }
 
 
-def cage_drawing_figure(cage: Cage) -> "Figure":
+def cage_drawing_figure(cage: Cage) -> Figure:
     """Side view and plan of a cage as its file has it, with dimensions in metres.
 
     The side view looks north. A sea bed that lies far below the cage is drawn nearer, and says
     so. Named are rings, corners, lines and sensors.
     """
     reach = float(np.abs(cage.corner_position[:, :2]).max())
-    with style():
-        figure = blank_figure(8.0, 11.0)
+    with page(8.0, 11.0) as figure:
         # A sea bed far below would leave the net no room.
         bottom = min(cage.site.water_depth, 1.5 * max(_depths(cage).values()))
         side, plan = figure.subplots(2, 1, height_ratios=(bottom + 0.4 * reach, 3.1 * reach))
@@ -60,7 +56,7 @@ def _depths(cage: Cage) -> dict[str, float]:
     return {"frame": cage.frame.depth, "cylinder": cylinder, "tube": tube, "tip": tip}
 
 
-def _measure(axes: "Axes", start: tuple[float, float], end: tuple[float, float], text: str) -> None:
+def _measure(axes: Axes, start: tuple[float, float], end: tuple[float, float], text: str) -> None:
     """A dimension between two places, its text in the middle, or below one that stands."""
     axes.annotate("", start, end, arrowprops=_MEASURE)
     if start[0] == end[0]:
@@ -70,11 +66,7 @@ def _measure(axes: "Axes", start: tuple[float, float], end: tuple[float, float],
         axes.text(middle, start[1], text, ha="center", va="center", **_SMALL)
 
 
-def _aside(axes: "Axes", text: str) -> None:
-    axes.set_title(text, loc="right", pad=8.0, color=MUTED, fontsize=8.0, fontweight="normal")
-
-
-def _finish_side(axes: "Axes", cage: Cage, reach: float, bottom: float) -> None:
+def _finish_side(axes: Axes, cage: Cage, reach: float, bottom: float) -> None:
     """Depths on the left, rings on the right, weights where they hang, water and bed."""
     radius, mesh, site, depths = cage.collar.radius, cage.mesh, cage.site, _depths(cage)
     axes.axhline(0.0, color=_WATER, lw=1.0, zorder=0)
@@ -99,10 +91,10 @@ def _finish_side(axes: "Axes", cage: Cage, reach: float, bottom: float) -> None:
     _name_depth_sensors(axes, cage, _SIDE)
     axes.set_ylabel("z [m]")
     head(axes, f"{cage.name}: side view, towards north")
-    _aside(axes, f"in water: tube {cage.sinker_tube.weight:g} N/m, tip {cage.tip.weight:g} N")
+    aside(axes, f"in water: tube {cage.sinker_tube.weight:g} N/m, tip {cage.tip.weight:g} N", 8.0)
 
 
-def _finish_plan(axes: "Axes", cage: Cage, reach: float) -> None:
+def _finish_plan(axes: Axes, cage: Cage, reach: float) -> None:
     """Names of corners and lines, the frame's sides, sensors, north and the current."""
     collar = cage.design_position[np.append(cage.ring_nodes(0), 0)]
     axes.plot(collar[:, 0], collar[:, 1], color=INK, lw=2.0, solid_joinstyle="round", zorder=4)
@@ -123,10 +115,10 @@ def _finish_plan(axes: "Axes", cage: Cage, reach: float) -> None:
         axes.text(place[0] + 0.14 * reach, place[1], text, va="center", color=colour)
     axes.set_ylabel("y, north [m]")
     head(axes, "Plan, north up")
-    _aside(axes, f"node = {cage.spokes} · ring + spoke, counter-clockwise from spoke 0")
+    aside(axes, f"node = {cage.spokes} · ring + spoke, counter-clockwise from spoke 0", 8.0)
 
 
-def _name_corners(axes: "Axes", cage: Cage, reach: float) -> None:
+def _name_corners(axes: Axes, cage: Cage, reach: float) -> None:
     """Corners, the frame lines between them, and where their anchor lines go."""
     corner = cage.corner_position[:, :2]
     ahead, behind = (np.roll(corner, n, axis=0) for n in (-1, 1))
@@ -145,7 +137,7 @@ def _name_corners(axes: "Axes", cage: Cage, reach: float) -> None:
         _beside(axes, names, place, place)
 
 
-def _name_bridles(axes: "Axes", cage: Cage) -> None:
+def _name_bridles(axes: Axes, cage: Cage) -> None:
     """Each bridle's name inside the collar, a shackle's on its bridle."""
     ends = cage.design_position[cage.bridle_nodes, :2]
     for name, end in zip(cage.bridle_names, ends, strict=True):
@@ -157,7 +149,7 @@ def _name_bridles(axes: "Axes", cage: Cage) -> None:
 
 
 def _along(
-    axes: "Axes", text: str, at: np.ndarray, way: np.ndarray, ha: str = "center", **look: Any
+    axes: Axes, text: str, at: np.ndarray, way: np.ndarray, ha: str = "center", **look: Any
 ) -> None:
     """Text along a direction, never upside down; what would end on the right begins there then."""
     turn = round(float(np.rad2deg(np.arctan2(way[1], way[0]))), 1)
@@ -168,7 +160,7 @@ def _along(
     axes.text(float(at[0]), float(at[1]), text, **_SMALL, **look)
 
 
-def _beside(axes: "Axes", text: str, at: np.ndarray, away: np.ndarray, **look: Any) -> None:
+def _beside(axes: Axes, text: str, at: np.ndarray, away: np.ndarray, **look: Any) -> None:
     """Text beside a place, on the side that a direction points to; else above."""
     x, y = np.sign(away.round(1)).tolist()
     y = y if x or y else 1.0
@@ -176,7 +168,7 @@ def _beside(axes: "Axes", text: str, at: np.ndarray, away: np.ndarray, **look: A
     note(axes, text, tuple(at.tolist()), (7.0 * x, 7.0 * y), **_SMALL, **look)
 
 
-def _name_depth_sensors(axes: "Axes", cage: Cage, view: np.ndarray) -> None:
+def _name_depth_sensors(axes: Axes, cage: Cage, view: np.ndarray) -> None:
     """Names of the depth sensors, together where these lie on one another."""
     together = defaultdict[tuple[float, float], list[str]](list)
     for one in cage.depth_sensors:

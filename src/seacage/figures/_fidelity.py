@@ -2,17 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
 from seacage.figures import _style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._types import Axes, Figure
 
 _WIDTH = 10.0  # of a whole page [inch]
 
@@ -35,7 +31,7 @@ def sector_figure(
     low: Float[np.ndarray, "sensor sector"],
     *,
     origin: Origin,  # of the truth
-) -> "Figure":
+) -> Figure:
     """Mean response of the truth and of the low fidelity by direction of the current."""
     place = np.arange(len(sectors))
     with _style.style():
@@ -52,7 +48,7 @@ def sector_figure(
 
 def left_figure(
     sensors: Sequence[str], left: Float[np.ndarray, " sensor"], *, least: float, origin: Origin
-) -> "Figure":
+) -> Figure:
     """Share of the low fidelity's error that the best rescaling leaves, one bar each.
 
     ``sensors``: their names.
@@ -61,8 +57,7 @@ def left_figure(
     ``origin``: of the truth.
     """
     place = np.arange(len(sensors))[::-1]
-    with _style.style():
-        figure = _style.blank_figure(6.6, 0.6 + 0.29 * len(sensors))
+    with _style.page(6.6, 0.6 + 0.29 * len(sensors)) as figure:
         axes = figure.subplots()
         axes.barh(place, np.ones(len(left)), 0.62, color=_style.LOW, alpha=0.18, lw=0)
         axes.barh(place, left, 0.62, color=_style.LOW, lw=0)
@@ -88,11 +83,10 @@ def gain_figure(
     real: Float[np.ndarray, "row 3"],
     *,
     origin: Origin,  # of the readings
-) -> "Figure":
+) -> Figure:
     """Gains with their intervals, where there is nothing to gain and where there is."""
     place = np.arange(len(names))[::-1]
-    with _style.style():
-        figure = _style.blank_figure(_WIDTH, 0.75 + 0.29 * len(names))
+    with _style.page(_WIDTH, 0.75 + 0.29 * len(names)) as figure:
         left, right = figure.subplots(1, 2, sharey=True)
         for axes, gain, colour in ((left, null, _style.MUTED), (right, real, _style.MULTI)):
             axes.axvline(0.0, color=_style.INK, lw=0.9)
@@ -121,7 +115,7 @@ def fouling_figure(
     met_growth: Float[np.ndarray, " bin"],
     met_gap: Float[np.ndarray, "bin sensor"],
     origin: Origin,  # of the truth
-) -> "Figure":
+) -> Figure:
     """Truth less low fidelity while the net grows."""
     from matplotlib import colormaps
 
@@ -141,12 +135,12 @@ def fouling_figure(
     return figure
 
 
-def _name_panel(axes: "Axes", panel: Panel) -> None:
+def _name_panel(axes: Axes, panel: Panel) -> None:
     axes.set_title(f"{panel.sensor}: {panel.quantity.lower()} [{panel.unit}]")
     axes.tick_params(labelbottom=True)
 
 
-def _explain(figure: "Figure", axes: "Axes", title: str, origin: Origin) -> None:
+def _explain(figure: Figure, axes: Axes, title: str, origin: Origin) -> None:
     """One line over all panels: what is drawn, in which colours, and where it comes from."""
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside upper right", ncols=len(handles))

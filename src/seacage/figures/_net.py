@@ -1,19 +1,15 @@
 """The net in side and top view, coloured by how far each panel has moved."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import Origin, towards
-from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, blank_figure, head, style
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MULTI, MUTED, head, page
+from seacage.figures._types import Axes, Figure, PolyCollection
 from seacage.ocean import SeaState
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.figure import Figure
 
 Node3 = Float[np.ndarray, "node 3"]
 PerBridle = Float[np.ndarray, " bridle"]
@@ -29,7 +25,7 @@ def net_figure(
     bridle_tension: PerBridle | None = None,
     sea: SeaState | None = None,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """Side and top view of one shape of the net, its bridles, frame and sensors.
 
     The side view looks across the current, which goes to the right; the top view has north up.
@@ -54,8 +50,7 @@ def net_figure(
     top = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     across = np.array([along[1], -along[0], 0.0])  # from the page towards the reader
     moved = np.linalg.norm(node_position - rest, axis=1)
-    with style():
-        figure = blank_figure(10.0, 3.9)
+    with page(10.0, 3.9) as figure:
         left, right = figure.subplots(1, 2, width_ratios=[1.62, 1.0])
         for axes, view, toward in ((left, side, across), (right, top, np.array([0.0, 0.0, 1.0]))):
             draw_ghost(axes, cage, rest, view)
@@ -75,7 +70,7 @@ def net_figure(
     return figure
 
 
-def draw_ghost(axes: "Axes", cage: Cage, rest: Node3, view: View) -> None:
+def draw_ghost(axes: Axes, cage: Cage, rest: Node3, view: View) -> None:
     """The rest shape as a faint net, so that the eye sees how far the net has gone."""
     from matplotlib.collections import LineCollection
 
@@ -84,7 +79,7 @@ def draw_ghost(axes: "Axes", cage: Cage, rest: Node3, view: View) -> None:
 
 
 def draw_net(
-    axes: "Axes",
+    axes: Axes,
     cage: Cage,
     position: Node3,
     moved: Float[np.ndarray, " node"],
@@ -92,7 +87,7 @@ def draw_net(
     view: View,
     toward: Float[np.ndarray, "3"],
     largest: float | None = None,
-) -> "ScalarMappable":
+) -> PolyCollection:
     """Panels from the farthest to the nearest, so that near twines cover far ones.
 
     Colours run up to the largest displacement [m], this shape's own if None.
@@ -117,7 +112,7 @@ def draw_net(
     return patches
 
 
-def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
+def draw_bridles(axes: Axes, cage: Cage, position: Node3, view: View) -> None:
     """From the frame's corners, where they are in still water, to the collar."""
     from matplotlib.collections import LineCollection
 
@@ -125,14 +120,14 @@ def draw_bridles(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     axes.add_collection(LineCollection(list(ends @ view.T), colors=LOW, linewidths=0.9, zorder=3))
 
 
-def draw_frame(axes: "Axes", cage: Cage, view: View) -> None:
+def draw_frame(axes: Axes, cage: Cage, view: View) -> None:
     corner = cage.corner_position @ view.T
     frame = np.vstack([corner, corner[:1]])
     axes.plot(frame[:, 0], frame[:, 1], color=MUTED, lw=0.9, ls=(0, (4, 2)), zorder=1)
     axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4, zorder=4)
 
 
-def draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
+def draw_sensors(axes: Axes, cage: Cage, position: Node3, view: View) -> None:
     """Depth sensors as discs on the net, shackles as diamonds where a bridle meets the collar."""
     depth = position[[sensor.node for sensor in cage.depth_sensors]] @ view.T
     shackle = position[cage.bridle_nodes[[entry.bridle for entry in cage.shackles]]] @ view.T
@@ -141,10 +136,9 @@ def draw_sensors(axes: "Axes", cage: Cage, position: Node3, view: View) -> None:
     axes.plot(shackle[:, 0], shackle[:, 1], "D", color=MULTI, ms=5.5, label="Load shackle", **look)
 
 
-def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
+def _finish_side(axes: Axes, sea: SeaState | None) -> None:
     axes.axhline(0.0, color="#7fb2dd", lw=0.8, zorder=0)
-    axes.set_xlabel("Along the current [m]")
-    axes.set_ylabel("z [m]")
+    axes.set(xlabel="Along the current [m]", ylabel="z [m]")
     axes.legend(loc="lower left", handletextpad=0.2)
     if sea is not None and sea.current_speed > 0.0:
         low, _ = axes.get_xlim()
@@ -153,10 +147,9 @@ def _finish_side(axes: "Axes", sea: SeaState | None) -> None:
 
 
 def _finish_top(
-    axes: "Axes", cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
+    axes: Axes, cage: Cage, position: Node3, tension: PerBridle | None, sea: SeaState | None
 ) -> None:
-    axes.set_xlabel("x, east [m]")
-    axes.set_ylabel("y, north [m]")
+    axes.set(xlabel="x, east [m]", ylabel="y, north [m]")
     if sea is not None and sea.current_speed > 0.0:
         along = sea.current_velocity / sea.current_speed
         # Half way out on the frame's up-stream side, where no bridle is.

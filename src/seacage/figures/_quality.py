@@ -1,18 +1,13 @@
 """A stream with what its quality checks flagged."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
 from seacage.conventions import Flag
 from seacage.figures._comparison import date_axis
-from seacage.figures._style import FIT, SENSOR, blank_figure, head, style
+from seacage.figures._style import FIT, SENSOR, head, page
+from seacage.figures._types import Axes, Figure
 from seacage.records import KEYS, Record
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _SUSPECT = "#b8860b"
 _MISSING = "#2f74b5"
@@ -28,7 +23,7 @@ _LABELS = {
 _DRAWN = 4000  # points of the line, at most about; of each kind of mark, half as many
 
 
-def quality_figure(record: Record) -> "Figure":
+def quality_figure(record: Record) -> Figure:
     """Every quantity over time: what came, and where it is suspect, failed or missing.
 
     The line breaks where the stream was silent for ten times its usual step. A failed value
@@ -36,8 +31,7 @@ def quality_figure(record: Record) -> "Figure":
     draw, the line goes through the least and the greatest of short spans.
     """
     keys = tuple(record.values)
-    with style():
-        figure = blank_figure(10.0, 0.6 + 1.9 * len(keys))
+    with page(10.0, 0.6 + 1.9 * len(keys)) as figure:
         panels = figure.subplots(len(keys), 1, sharex=True, squeeze=False)[:, 0]
         for axes, key in zip(panels, keys, strict=True):
             _panel(axes, record, key)
@@ -46,7 +40,7 @@ def quality_figure(record: Record) -> "Figure":
     return figure
 
 
-def _panel(axes: "Axes", record: Record, key: str) -> None:
+def _panel(axes: Axes, record: Record, key: str) -> None:
     values, flags = record.values[key], record.flags[key]
     kept = record.usable(key)
     low, high = _limits(values[kept] if np.any(kept) else values[np.isfinite(values)], key)
@@ -79,8 +73,7 @@ def _panel(axes: "Axes", record: Record, key: str) -> None:
             # An empty line that is not clipped lies in 1970, and the layout makes room for it.
             clip_on=not len(rows),
         )
-    axes.set_ylim(low, high)
-    axes.set_ylabel(f"{_LABELS[key]} [{KEYS[key].unit}]")
+    axes.set(ylim=(low, high), ylabel=f"{_LABELS[key]} [{KEYS[key].unit}]")
     axes.margins(x=0.01)
 
 

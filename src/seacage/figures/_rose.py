@@ -1,17 +1,12 @@
 """What each bridle carries, drawn where it pulls."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin
-from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, blank_figure, caption, style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
+from seacage.figures._style import AMOUNT, FIT, INK, LOW, MUTED, aside, caption, page
+from seacage.figures._types import Figure, PolarAxes
 
 _HOLE = 0.3  # radius of the empty middle over that of the bars' longest, so that bars begin apart
 _FAN = 0.8  # share of the least angle between bridles that the bars of one bridle take
@@ -26,7 +21,7 @@ def tension_rose_figure(
     lowest: Float[np.ndarray, "case bridle"] | None = None,
     highest: Float[np.ndarray, "case bridle"] | None = None,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """Utilisation of every bridle at its compass bearing, north up, one bar for each current.
 
     Parameters
@@ -44,8 +39,7 @@ def tension_rose_figure(
     """
     if not len(current_speed):
         raise InputError("tension_rose_figure: there is no case to draw. Give one or more.")
-    with style():
-        figure = blank_figure(5.6, 4.7)
+    with page(5.6, 4.7) as figure:
         axes = _compass(figure)
         bearing = np.deg2rad(np.array(cage.bridles.bearings) + cage.heading)
         share = 100.0 / cage.bridle_capacity
@@ -62,13 +56,11 @@ def tension_rose_figure(
         _arrow(axes, current_to)
         axes.legend(loc="center left", bbox_to_anchor=(1.04, 0.5), title="Current")
         axes.set_title("Bridles: share of capacity", pad=18.0)
-        axes.set_title(
-            str(origin), loc="right", pad=18.0, color=MUTED, fontsize=8.0, fontweight="normal"
-        )
+        aside(axes, str(origin), 18.0)
     return figure
 
 
-def _compass(figure: "Figure") -> "PolarAxes":
+def _compass(figure: Figure) -> PolarAxes:
     from matplotlib.projections.polar import PolarAxes
 
     axes = figure.add_subplot(projection="polar")
@@ -96,7 +88,7 @@ def _fan(bearing: Float[np.ndarray, " bridle"], cases: int) -> tuple[np.ndarray,
 
 
 def _finish(
-    axes: "PolarAxes", cage: Cage, bearing: Float[np.ndarray, " bridle"], largest: float
+    axes: PolarAxes, cage: Cage, bearing: Float[np.ndarray, " bridle"], largest: float
 ) -> None:
     """Bridles by number; the circle of full capacity where it is within reach."""
     numbers = [name.removeprefix("bridle-") for name in cage.bridle_names]
@@ -113,14 +105,14 @@ def _finish(
     axes.spines["polar"].set_visible(False)
 
 
-def _explain(axes: "PolarAxes", cage: Cage, *, ranges: bool) -> None:
+def _explain(axes: PolarAxes, cage: Cage, *, ranges: bool) -> None:
     text = f"100 % is {cage.bridle_capacity[0] / 1e3:.0f} kN; bridles by number, north up"
     if ranges:
         text += "\nbars: mean; lines: least to most"
     caption(axes, text, (0.5, -0.07), ha="center", va="top", color=MUTED, fontsize=8.0)
 
 
-def _arrow(axes: "PolarAxes", current_to: float) -> None:
+def _arrow(axes: PolarAxes, current_to: float) -> None:
     """The current, in the empty middle."""
     angle = np.deg2rad(current_to)
     half = 0.075 * np.array([np.sin(angle), np.cos(angle)])

@@ -2,16 +2,14 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, LOW, MUTED, blank_figure, style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from seacage.figures._style import FIT, LOW, MUTED, page
+from seacage.figures._types import Figure
 
 Node3 = Float[np.ndarray, "node 3"]
 _SIMULATED, _PREDICTED = LOW, FIT
@@ -31,15 +29,14 @@ def shape_views_figure(
     edges: Int[np.ndarray, "edge 2"],  # of the net, as pairs of nodes
     *,
     origin: Origin = Origin.COMPUTED,  # of the computed shapes
-) -> "Figure":
+) -> Figure:
     """Each sea in a row, each model in a column, its net in red over the computed one in blue.
 
     Positions are drawn, x east, y north and z up, all to one scale; the worst node and its
     distance are marked.
     """
     models = list(views[0].predicted)
-    with style():
-        figure = blank_figure(3.7 * len(models), 0.5 + 3.0 * len(views))
+    with page(3.7 * len(models), 0.5 + 3.0 * len(views)) as figure:
         grid = figure.subplots(
             len(views), len(models), squeeze=False, subplot_kw={"projection": "3d"}
         ).tolist()
@@ -87,7 +84,7 @@ def _frame(axes: Any, every: Node3) -> None:
     axes.view_init(elev=14.0, azim=-58.0)
 
 
-def _explain(figure: "Figure", origin: Origin) -> None:
+def _explain(figure: Figure, origin: Origin) -> None:
     from matplotlib.lines import Line2D
 
     handles = [

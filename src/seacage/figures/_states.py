@@ -1,17 +1,13 @@
 """The cage at several currents, from the side and from above."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, towards
 from seacage.figures._net import draw_bridles, draw_ghost, draw_net
-from seacage.figures._style import INK, MUTED, blank_figure, style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from seacage.figures._style import INK, aside, blank_figure, style
+from seacage.figures._types import Figure
 
 _ROOM = 3.0  # shown round the outermost net [m]
 # Width of a column, and what titles and axis labels take of the height [inch]
@@ -28,7 +24,7 @@ def states_figure(
     current_to: float,
     rest_position: Float[np.ndarray, "node 3"] | None = None,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """One column for each current: the net from the side above, from the air below.
 
     The current goes to the right in all of them, and all share their scales and colours.
@@ -74,7 +70,7 @@ def states_figure(
     return figure
 
 
-def _grid(count: int, extents: list[_Extent]) -> "tuple[Figure, np.ndarray]":
+def _grid(count: int, extents: list[_Extent]) -> tuple[Figure, np.ndarray]:
     """Two rows of axes, as high as metres equally wide and high make them."""
     (left, right), _ = extents[0]
     heights = [high - low for _, (low, high) in extents]
@@ -96,4 +92,4 @@ def _label(rows: np.ndarray, speed: Float[np.ndarray, " case"], origin: Origin) 
         axes.set_xlabel("Along the current [m]")
     rows[0, 0].set_ylabel("z [m]")
     rows[1, 0].set_ylabel("Left of the current [m]", color=INK)
-    rows[0, -1].set_title(str(origin), loc="right", color=MUTED, fontsize=8.0, fontweight="normal")
+    aside(rows[0, -1], str(origin))

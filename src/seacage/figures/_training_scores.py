@@ -2,17 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, INK, LOW, MULTI, SENSOR, blank_figure, head, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._style import FIT, INK, LOW, MULTI, SENSOR, aside, head, page
+from seacage.figures._types import Axes, Figure
 
 _LOOKS = ((LOW, "o"), (MULTI, "D"), ("#4f8a4c", "s"), ("#7d5ba6", "^"), (SENSOR, "v"))
 _NOMINAL = 0.95
@@ -35,11 +31,10 @@ def training_scores_figure(
     ways: Mapping[str, TrainingScores],  # by name
     *,
     origin: Origin,  # of the readings
-) -> "Figure":
+) -> Figure:
     """Error, score and coverage of each sensor, one mark for each way of training."""
     place = np.arange(len(sensors))[::-1]
-    with style():
-        figure = blank_figure(11.0, 1.35 + 0.36 * len(sensors))
+    with page(11.0, 1.35 + 0.36 * len(sensors)) as figure:
         left, middle, right = figure.subplots(1, 3, sharey=True)
         for number, ((name, one), (colour, mark)) in enumerate(
             zip(ways.items(), _LOOKS, strict=False)
@@ -57,15 +52,13 @@ def training_scores_figure(
         _finish(right, "Inside the 95 % interval", "Share of readings [-]", line=_NOMINAL)
         left.set_yticks(place, sensors)
         right.set_xlim(right=1.01)
-        right.set_title(
-            str(origin), loc="right", pad=8.0, color=SENSOR, fontsize=8.0, fontweight="normal"
-        )
+        aside(right, str(origin), 8.0, colour=SENSOR)
         handles, names = left.get_legend_handles_labels()
         figure.legend(handles, names, loc="outside lower center", ncols=len(ways))
     return figure
 
 
-def _finish(axes: "Axes", title: str, label: str, *, line: float = 1.0) -> None:
+def _finish(axes: Axes, title: str, label: str, *, line: float = 1.0) -> None:
     head(axes, title)
     axes.set_xlabel(label)
     axes.axvline(line, color=FIT if line < 1.0 else INK, lw=0.9, ls=(0, (5, 3)), zorder=0)

@@ -2,17 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, blank_figure, caption, head, style
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, caption, head, page
+from seacage.figures._types import Axes, Figure
 
 _LOOKS = ((MULTI, "-"), (LOW, "--"), ("#4f8a4c", "-."), ("#7d5ba6", ":"))
 
@@ -28,13 +24,10 @@ class VolumeMark:
     source: str  # where it was published
 
 
+_LADER = "Lader et al. (2008), abstract"
 MEASURED_VOLUMES = (
-    VolumeMark(
-        name="Varaldsøy", current_speed=0.13, fraction=0.80, source="Lader et al. (2008), abstract"
-    ),
-    VolumeMark(
-        name="Hestur", current_speed=0.35, fraction=0.60, source="Lader et al. (2008), abstract"
-    ),
+    VolumeMark(name="Varaldsøy", current_speed=0.13, fraction=0.80, source=_LADER),
+    VolumeMark(name="Hestur", current_speed=0.35, fraction=0.60, source=_LADER),
     VolumeMark(
         name="Large circular cage",
         current_speed=0.5,
@@ -53,7 +46,7 @@ def volume_figure(
     *,
     measured: Sequence[VolumeMark] = MEASURED_VOLUMES,
     origin: Origin = Origin.COMPUTED,
-) -> "Figure":
+) -> Figure:
     """Volume over that in still water against the current.
 
     Parameters
@@ -67,16 +60,14 @@ def volume_figure(
     origin
         Where the lines come from.
     """
-    with style():
-        figure = blank_figure(6.2, 3.5)
+    with page(6.2, 3.5) as figure:
         axes = figure.subplots()
         for (colour, dash), (name, kept) in zip(_LOOKS, fraction.items(), strict=False):
             axes.plot(current_speed, 100.0 * kept, color=colour, ls=dash, lw=1.7, label=name)
         for mark in measured:
             _draw_mark(axes, mark)
         axes.set(xlim=(0.0, 1.02 * float(current_speed.max())), ylim=(0.0, 104.0))
-        axes.set_xlabel("Current speed [m/s]")
-        axes.set_ylabel("Volume [% of still water]")
+        axes.set(xlabel="Current speed [m/s]", ylabel="Volume [% of still water]")
         if measured:
             sources = "; ".join(dict.fromkeys(mark.source for mark in measured))
             note = f"◆ measured on other cages with other gear:\n{sources}"
@@ -85,7 +76,7 @@ def volume_figure(
     return figure
 
 
-def _draw_mark(axes: "Axes", mark: VolumeMark) -> None:
+def _draw_mark(axes: Axes, mark: VolumeMark) -> None:
     place = (mark.current_speed, 100.0 * mark.fraction)
     axes.plot(*place, "D", color=FIT, mec="white", mew=0.9, ms=6.5, zorder=4)
     name, offset = mark.name, (-7, -1)

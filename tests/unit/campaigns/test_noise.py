@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seacage.campaigns._noise import wandering
+from seacage.campaigns._buoy_records import wandering
 
 
 def test_it_has_the_size_and_the_memory_requested() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from seacage.campaigns._waves import generated_waves, shortest_period, waves_at_site
+from seacage.campaigns._buoy_records import generated_waves, shortest_period, waves_at_site
 from seacage.conventions import Flag, InputError, Origin
 from seacage.ocean import SeaState
 from seacage.records import Record, read_record

@@ -9,8 +9,7 @@ from PIL import Image
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.figures import Motion, write_animation
-from seacage.figures._animation import _patches
-from seacage.figures._gif import Gif
+from seacage.figures._animation import Gif, _patches
 from seacage.ocean import SeaState, sample_waves, surface_elevation
 
 

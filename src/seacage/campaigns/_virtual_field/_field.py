@@ -1,8 +1,8 @@
 """A virtual field: a truth that the low fidelity misses, seen by imperfect sensors."""
 
 import tempfile
-from collections.abc import Generator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -11,14 +11,9 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
+from seacage.campaigns._virtual_field import _sensors
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._responses import Responses, true_responses
-from seacage.campaigns._virtual_field._sensors import (
-    air_pressure,
-    radio_silence,
-    receive_buoy,
-    sense,
-)
 from seacage.campaigns._virtual_field._simulated import (
     FieldRequest,
     Truth,
@@ -124,7 +119,7 @@ def virtual_field(
             cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
         )
         with _folder(kept) as folder:
-            stretches = simulate_share(request, folder, workers=workers, progress=progress)
+            stretches = simulate_share(request, Path(folder), workers=workers, progress=progress)
             return _simulate(request, gather_truth(request, stretches))
     if waves is not None or events or timetable is not None:
         raise InputError(
@@ -132,11 +127,9 @@ def virtual_field(
             'Leave them out, or take method="simulate".'
         )
     time = reading_times(buoy, every_s, usual_s=60.0)
-    with _folder(kept) as folder:
-        answers, error = true_responses(
-            cage, hidden, store=folder, workers=workers, progress=progress
-        )
-    return _settle(cage, buoy, hidden, seed, time, answers, error)
+    with _folder(kept) as store:
+        grid = true_responses(cage, hidden, store=Path(store), workers=workers, progress=progress)
+    return _settle(cage, buoy, hidden, seed, time, *grid)
 
 
 def virtual_field_share(
@@ -176,13 +169,8 @@ def _in_time(buoy: Record, every_s: float | None, timetable: Timetable | None) -
     return {"time": time, "timetable": timetable or Timetable.over(buoy)}
 
 
-@contextmanager
-def _folder(kept: str | Path | None) -> Generator[Path]:
-    if kept is not None:
-        yield Path(kept)
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        yield Path(folder)
+def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:
+    return tempfile.TemporaryDirectory() if kept is None else nullcontext(kept)
 
 
 def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
@@ -190,39 +178,27 @@ def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
     cage, hidden, time = request.cage, request.hidden, request.time
     chance = np.random.default_rng([request.seed, *b"sensors"])
     radio, air, at_buoy, *own = chance.spawn(3 + len(cage.sensor_names))
-    silence = radio_silence(hidden, time, radio)
+    silence = _sensors.radio_silence(hidden, time, radio)
     known = truth.available
-    pressure = air_pressure(hidden, time, air)[known]
-    head = truth.wave_head[known]
+    pressure = _sensors.air_pressure(hidden, time, air)[known]
+    heads = [*truth.wave_head[known].T, *[None] * len(cage.shackles)]
     exact = _exact_sensors(cage, time[known], truth.readings(cage)[known])
+    faults: dict[str, Any] = {"silence": silence, "events": request.events}
     seen = {
-        name: sense(
-            sensor,
-            hidden,
-            rng,
-            wave_head=head[:, number] if number < head.shape[1] else None,
-            pressure=pressure,
-            silence=silence,
-            events=request.events,
-        )
-        for number, ((name, sensor), rng) in enumerate(zip(exact.items(), own, strict=True))
+        name: _sensors.sense(exact[name], hidden, rng, wave_head=head, pressure=pressure, **faults)
+        for name, head, rng in zip(exact, heads, own, strict=True)
     }
     record = FieldRecord(
         cage=cage.name,
-        buoy=receive_buoy(request.buoy, hidden, at_buoy, silence=silence, events=request.events),
+        buoy=_sensors.receive_buoy(request.buoy, hidden, at_buoy, **faults),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
         notes=_simulation_notes(request, truth),
     )
-    happened = tuple(f"Event: {event}." for event in request.events)
-    return VirtualField(
-        record=record,
-        truth=replace(
-            record, buoy=request.buoy, sensors=exact, notes=(*record.notes, *happened, _EXACT)
-        ),
-        means=truth.means,
-    )
+    notes = (*record.notes, *(f"Event: {event}." for event in request.events), _EXACT)
+    exactly = replace(record, buoy=request.buoy, sensors=exact, notes=notes)
+    return VirtualField(record=record, truth=exactly, means=truth.means)
 
 
 def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
@@ -271,13 +247,11 @@ def _settle(
         ),
     )
     seen = {
-        name: sense(sensor, hidden, rng)
+        name: _sensors.sense(sensor, hidden, rng)
         for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
-    return VirtualField(
-        record=replace(truth, sensors=seen),
-        truth=replace(truth, notes=(*truth.notes, _EXACT)),
-    )
+    exactly = replace(truth, notes=(*truth.notes, _EXACT))
+    return VirtualField(record=replace(truth, sensors=seen), truth=exactly)
 
 
 def current_over_net(

@@ -61,15 +61,10 @@ class Responses:
         opposite = np.roll(value, len(self.direction) // 2, axis=1)
         through_zero = np.vstack([opposite[:0:-1], value])
         around = np.hstack([through_zero[:, -_WRAP:], through_zero, through_zero[:, :_WRAP]])
-        turn = 2.0 * np.pi
-        spline = RectBivariateSpline(
-            np.concatenate([-self.speed[:0:-1], self.speed]),
-            np.concatenate(
-                [self.direction[-_WRAP:] - turn, self.direction, self.direction[:_WRAP] + turn]
-            ),
-            around,
-        )
-        return spline.ev(speed, direction)
+        turn, to = 2.0 * np.pi, self.direction
+        speeds = np.concatenate([-self.speed[:0:-1], self.speed])
+        directions = np.concatenate([to[-_WRAP:] - turn, to, to[:_WRAP] + turn])
+        return RectBivariateSpline(speeds, directions, around).ev(speed, direction)
 
 
 def true_responses(

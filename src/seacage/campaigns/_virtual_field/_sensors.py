@@ -4,12 +4,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float, Int, Shaped
+from jaxtyping import Float, Shaped
 
-from seacage.campaigns._noise import wandering
+from seacage.campaigns._buoy_records import wandering
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._spells import Spells
-from seacage.campaigns._virtual_field._truth_parameters import OutagesTruth, TruthParameters
+from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.records import Record, check_record
 
 _WEEK = 604800.0
@@ -20,23 +20,17 @@ Values = Float[np.ndarray, " t"]
 
 def radio_silence(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Spells:
     """Spells in which no stream is received, between the first and the last of some times."""
-    outages = hidden.outages
-    return Spells.by_chance(
-        time, rng, per_week=outages.radio_losses_per_week, mean_h=outages.radio_loss_mean_h
-    )
+    own = hidden.outages
+    often, long = own.radio_losses_per_week, own.radio_loss_mean_h
+    return Spells.by_chance(time, rng, per_week=often, mean_h=long)
 
 
 def air_pressure(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Values:
     """How far the air's pressure is off its mean at some times, for all sensors alike [hPa]."""
     errors, seconds = hidden.depth, _seconds(time)
     grid = np.arange(0.0, seconds[-1] + 2.0 * _WEATHER_STEP, _WEATHER_STEP)
-    weather = wandering(
-        rng,
-        len(grid),
-        sd=errors.air_pressure_sd_hpa,
-        step_s=_WEATHER_STEP,
-        memory_s=errors.air_pressure_memory_s,
-    )
+    sd, memory = errors.air_pressure_sd_hpa, errors.air_pressure_memory_s
+    weather = wandering(rng, len(grid), sd=sd, step_s=_WEATHER_STEP, memory_s=memory)
     return np.interp(seconds, grid, weather[:, 0])
 
 
@@ -79,8 +73,7 @@ def sense(
         values += 0.0 if pressure is None else errors.m_per_hpa * pressure
         size, alive = errors.spike_m, None
     sent = replace(truth, values={key: values}, flags={})
-    outages = hidden.outages
-    return _receive(sent, events, {key: size}, outages, faults, silence=silence, alive=alive)
+    return _receive(sent, events, {key: size}, hidden, faults, silence=silence, alive=alive)
 
 
 def receive_buoy(
@@ -99,8 +92,7 @@ def receive_buoy(
     ``buoy``: what it measured. ``hidden``, ``rng``, ``silence``, ``events``: as of ``sense``.
     """
     sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
-    sent = replace(buoy, flags={})
-    return _receive(sent, events, sizes, hidden.outages, rng, silence=silence)
+    return _receive(replace(buoy, flags={}), events, sizes, hidden, rng, silence=silence)
 
 
 def _seconds(time: Times) -> Values:
@@ -111,7 +103,7 @@ def _receive(
     sent: Record,
     events: Sequence[Event],
     spike_sizes: Mapping[str, float],
-    outages: OutagesTruth,
+    hidden: TruthParameters,
     rng: np.random.Generator,
     *,
     silence: Spells | None,
@@ -122,7 +114,7 @@ def _receive(
     Spells are drawn over all its times, not those that an event left, so that an event that
     silences it moves no other fault.
     """
-    all_times, (sticking, spiking, losing) = sent.time, rng.spawn(3)
+    all_times, outages, (sticking, spiking, losing) = sent.time, hidden.outages, rng.spawn(3)
     for event in events:
         sent = event.apply_to(sent)
     time, values = sent.time, {key: column.copy() for key, column in sent.values.items()}
@@ -134,7 +126,11 @@ def _receive(
             column[rows] = column[rows.start]
     spikes = Spells.by_chance(all_times, spiking, per_week=outages.spikes_per_week)
     for key, size in spike_sizes.items():
-        _spike(values[key], np.searchsorted(time, spikes.start), size, spiking)
+        # Single readings are set far off.
+        rows = np.searchsorted(time, spikes.start)
+        far = size * spiking.choice([-1.0, 1.0], len(rows)) * spiking.uniform(0.7, 1.3, len(rows))
+        there = rows < len(time)
+        values[key][rows[there]] += far[there]
     gaps = Spells.by_chance(
         all_times, losing, per_week=outages.gaps_per_week, mean_h=outages.gap_mean_h
     )
@@ -145,12 +141,3 @@ def _receive(
         received &= alive.cover(time)
     values = {key: column[received] for key, column in values.items()}
     return check_record(replace(sent, time=time[received], values=values, flags={}))
-
-
-def _spike(
-    column: Values, rows: Int[np.ndarray, " spike"], size: float, rng: np.random.Generator
-) -> None:
-    """Set single readings far off, in place."""
-    far = size * rng.choice([-1.0, 1.0], size=len(rows)) * rng.uniform(0.7, 1.3, size=len(rows))
-    there = rows < len(column)
-    column[rows[there]] += far[there]

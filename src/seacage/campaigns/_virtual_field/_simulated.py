@@ -10,13 +10,13 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.cage import Cage
+from seacage.campaigns._buoy_records import usable_waves
 from seacage.campaigns._virtual_field._events import Event, check_events
 from seacage.campaigns._virtual_field._spells import Spells
 from seacage.campaigns._virtual_field._stretches import StretchStore, TrueCage, simulate_stretches
 from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, cut
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather, true_weather
-from seacage.campaigns._waves import usable_waves
 from seacage.conventions import InputError, Progress, SeacageError
 from seacage.records import GROUPS, Record, TrueMeans, check_record, instant
 
@@ -55,13 +55,9 @@ class FieldRequest:
     @cached_property
     def weather(self) -> Weather:
         """True weather at the cage."""
+        hidden, depth = self.hidden, self.cage.site.water_depth
         return true_weather(
-            self.buoy,
-            self.waves,
-            hidden=self.hidden,
-            seed=self.seed,
-            every_s=self.every,
-            depth=self.cage.site.water_depth,
+            self.buoy, self.waves, hidden=hidden, seed=self.seed, every_s=self.every, depth=depth
         )
 
     @cached_property

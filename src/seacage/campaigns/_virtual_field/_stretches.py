@@ -93,19 +93,16 @@ class StretchStore:
 
         Raises InputError: it holds those of another field.
         """
-        identity = {
-            "schema": "seacage stretches 1",
-            "seacage": version("seacage"),
-            "physics": PHYSICS,
-            **identity,
-        }
+        software = {"seacage": version("seacage"), "physics": PHYSICS}
+        identity = {"schema": "seacage stretches 1", **software, **identity}
         manifest = folder / _MANIFEST
         if manifest.exists():
             found = _manifest(manifest)
-            other = [_words(name) for name, value in identity.items() if found.get(name) != value]
+            other = [name for name, value in identity.items() if found.get(name) != value]
             if other:
+                words = [name.removesuffix("_sha256").replace("_", " ") for name in other]
                 raise InputError(
-                    f"{folder} holds stretches of a field with another {' and '.join(other)}. "
+                    f"{folder} holds stretches of a field with another {' and '.join(words)}. "
                     "Give another folder, or delete this one."
                 )
         else:
@@ -241,10 +238,6 @@ def _manifest(path: Path) -> dict[str, object]:
         raise RecordError(
             f"{path}: this is no manifest of stretches ({error}). Delete its folder."
         ) from error
-
-
-def _words(name: str) -> str:
-    return name.removesuffix("_sha256").replace("_", " ")
 
 
 def _write(path: Path, content: bytes) -> None:

@@ -123,14 +123,8 @@ def cut(
             last = min(first + each, end)
             if number % one_in and last < readings and not always[first:last].any():
                 continue
-            begun = number > 0
-            stretch = Stretch(
-                first=first,
-                readings=last - first,
-                damaged=broken + breaking if begun else broken,
-                breaking=() if begun else breaking,
-            )
-            found.append(stretch)
+            was, now = (broken + breaking, ()) if number else (broken, breaking)
+            found.append(Stretch(first=first, readings=last - first, damaged=was, breaking=now))
         broken += breaking
     return tuple(found)
 

@@ -9,8 +9,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
+from seacage.campaigns._buoy_records import generated_current
 from seacage.campaigns._cases import CaseBlock, answer_block, software_version
-from seacage.campaigns._current import generated_current
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import current_at_cage

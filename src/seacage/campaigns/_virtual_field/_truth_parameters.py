@@ -295,40 +295,29 @@ class TruthParameters:
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
-        least, most = self.fouling.shallow_least, self.fouling.shallow_most
-        shallow = least + growth * (most - least)
-        return self._build(cage).fouled(
-            shallow=shallow,
-            deep=self.fouling.deep_share * shallow,
-            boundary_depth=self.fouling.boundary_depth_m,
-        )
+        own = self.fouling
+        shallow = own.shallow_least + growth * (own.shallow_most - own.shallow_least)
+        deep, boundary = own.deep_share * shallow, own.boundary_depth_m
+        return self._build(cage).fouled(shallow=shallow, deep=deep, boundary_depth=boundary)
 
     def fine_cage(self, cage: Cage) -> Cage:
         """The true cage on a finer mesh, whose nodes include those drawn; nothing grows on it.
 
         Ropes run on all of the new meridians, as strong together as those drawn.
         """
-        times = self.netting.refined
-        return (
-            self._build(cage)
-            .refined(times)
-            .altered(
-                ropes={
-                    "axial_stiffness_n": cage.ropes.axial_stiffness / times,
-                    "diameter_m": cage.ropes.diameter / math.sqrt(times),
-                },
-            )
-        )
+        times, drawn = self.netting.refined, cage.ropes
+        stiffness, diameter = drawn.axial_stiffness / times, drawn.diameter / math.sqrt(times)
+        ropes = {"axial_stiffness_n": stiffness, "diameter_m": diameter}
+        return self._build(cage).refined(times).altered(ropes=ropes)
 
     def _build(self, cage: Cage) -> Cage:
         """The cage as riggers left it: what is drawn from the ranges depends on the seed alone."""
-        rng, bridles, frame = np.random.default_rng(self.seed), self.bridles, self.frame
+        rng, collar = np.random.default_rng(self.seed), self.collar
+        bridles, frame = self.bridles, self.frame
         offset = rng.normal(scale=bridles.length_sd_m, size=cage.bridle_count)
         tighter = rng.uniform(bridles.pretension_least, bridles.pretension_most)
         slack = rng.uniform(frame.slack_least_m, frame.slack_most_m)
-        brackets = rng.integers(
-            self.collar.brackets_least, self.collar.brackets_most, endpoint=True
-        )
+        brackets = rng.integers(collar.brackets_least, collar.brackets_most, endpoint=True)
         cage = self.built.build(self._move_corners(cage, rng))
         return cage.altered(
             netting={"elastic_modulus_pa": self.netting.elastic_modulus_pa},
@@ -344,36 +333,24 @@ class TruthParameters:
     def _move_corners(self, cage: Cage, rng: np.random.Generator) -> Cage:
         if self.frame.corner_sd_m == 0.0:
             return cage
-        east, north = (
-            cage.frame.corners
-            + rng.normal(scale=self.frame.corner_sd_m, size=cage.frame.corners.shape)
-        ).T
-        frame = replace(
-            cage.frame,
-            side=None,
-            corners_east=tuple(east.tolist()),
-            corners_north=tuple(north.tolist()),
-        )
+        drawn = cage.frame.corners
+        moved = drawn + rng.normal(scale=self.frame.corner_sd_m, size=drawn.shape)
+        east, north = map(tuple, moved.T.tolist())
+        frame = replace(cage.frame, side=None, corners_east=east, corners_north=north)
         return replace(cage, frame=frame)
 
 
 def _build(kind: Any, table: dict[str, Any], *, where: str) -> Any:
     """A frozen value from a table that has its keys, all of them and no other."""
     kinds = {one.name: one.type for one in fields(kind)}
-    needed = {
-        one.name
-        for one in fields(kind)
-        if one.default is MISSING and one.default_factory is MISSING
-    }
+    needed = {one.name for one in fields(kind) if one.default is one.default_factory is MISSING}
     wrong = sorted((needed - table.keys()) | (table.keys() - kinds.keys()))
     if wrong:
         raise InputError(
             f"{where}: the key {wrong[0]!r} is {'missing' if wrong[0] in kinds else 'unknown'}. "
             "Compare with the hidden parameters that come with seacage."
         )
-    return kind(
-        **{key: _value(kinds[key], value, where=f"{where}, {key}") for key, value in table.items()}
-    )
+    return kind(**{k: _value(kinds[k], v, where=f"{where}, {k}") for k, v in table.items()})
 
 
 def _sha256(text: str) -> str:

@@ -8,15 +8,12 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage import ocean
-from seacage.campaigns._noise import wandering
-from seacage.campaigns._virtual_field._interpolation import Even
+from seacage.campaigns._buoy_records import shortest_period, usable_waves, wandering
 from seacage.campaigns._virtual_field._truth_parameters import (
-    CurrentTruth,
     FoulingTruth,
     ProfileTruth,
     TruthParameters,
 )
-from seacage.campaigns._waves import shortest_period, usable_waves
 from seacage.conventions import InputError, compass, towards
 from seacage.dynamics import AbstractWeather
 from seacage.records import Record
@@ -28,6 +25,54 @@ PerT = Float[np.ndarray, " t"]
 _DAY = 86400.0
 _MINUTE = 60.0  # step in which sea and profile change, and for which waves are good [s]
 _RIPPLE = 1.0  # shortest peak period: a flat sea has a frequency too [s]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Even:
+    """Values in even steps from second 0 on, straight between them."""
+
+    step: float  # between rows [s]
+    values: Float[np.ndarray, "row value"]  # two rows at least
+    first: int = 0  # row of the whole that comes first here
+    count: int | None = None  # rows of the whole; None where all are here
+
+    def at(
+        self, second: float | Float[np.ndarray, " t"], *, held: bool = True
+    ) -> Float[np.ndarray, "*t value"]:
+        """Values at a time or some.
+
+        Beyond the whole the end values are held, or go on as straight as the last step if not
+        ``held``.
+
+        Raises InputError: a time of the whole that was cut off.
+        """
+        place = np.asarray(second / self.step - self.first)
+        self._check(float(place.min()), float(place.max()))
+        row = np.clip(np.floor(place), 0, len(self.values) - 2).astype(np.intp)
+        share = (place - row)[..., None]
+        if held:
+            share = np.clip(share, 0.0, 1.0)
+        return (1.0 - share) * self.values[row] + share * self.values[row + 1]
+
+    def between(self, start: float, end: float) -> Self:
+        """The rows around the time from one second to another."""
+        last = len(self.values)
+        low = min(max(math.floor(start / self.step) - self.first, 0), last - 2)
+        high = max(min(math.ceil(end / self.step) - self.first + 1, last), low + 2)
+        values = self.values[low:high].copy()
+        return replace(self, values=values, first=self.first + low, count=self.count or last)
+
+    def _check(self, least: float, most: float) -> None:
+        last = len(self.values) - 1
+        early = self.first > 0 and least < 0.0
+        late = self.count is not None and self.first + last + 1 < self.count and most > last
+        if early or late:
+            wrong = (least if early else most) + self.first
+            raise InputError(
+                f"Weather: second {wrong * self.step:g} is not among those kept, "
+                f"{self.first * self.step:g} to {(self.first + last) * self.step:g}. "
+                "Keep a longer time with `between`."
+            )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -113,11 +158,10 @@ class Weather(AbstractWeather):
         """
         time = second.reshape(len(second), *(1,) * (position.ndim - 2))
         minutes, firsts = np.unique(np.floor(second / _MINUTE), return_index=True)
+        places, times = (np.split(each, firsts[1:]) for each in (position, time))
         heads = [
-            ocean.pressure_head(self.waves(minute * _MINUTE), there, then - minute * _MINUTE)
-            for minute, there, then in zip(
-                minutes, np.split(position, firsts[1:]), np.split(time, firsts[1:]), strict=True
-            )
+            ocean.pressure_head(self.waves(start), there, then - start)
+            for start, there, then in zip(_MINUTE * minutes, places, times, strict=True)
         ]
         return np.concatenate(heads)
 
@@ -244,14 +288,13 @@ def current_at_cage(
     now = _between(seconds, there, at_buoy)
     lag = np.minimum(way.distance_m / np.maximum(np.linalg.norm(now, axis=1), 1e-6), way.lag_most_s)
     arrived = _between(seconds - lag, there, at_buoy)
-    eddies = wandering(
-        rng,
-        len(seconds),
-        sd=way.residual_sd_m_s,
-        step_s=float(seconds[1] - seconds[0]),
-        memory_s=way.residual_memory_s,
-    )
-    return _shelter(arrived, way) + eddies
+    step, sd, memory = float(seconds[1] - seconds[0]), way.residual_sd_m_s, way.residual_memory_s
+    eddies = wandering(rng, len(seconds), sd=sd, step_s=step, memory_s=memory)
+    # Slowed and turned on its way, smoothly by direction
+    to = compass(arrived)
+    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
+    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
+    return towards(np.linalg.norm(arrived, axis=1) * factor, to + turn) + eddies
 
 
 def _buoy_series(buoy: Record) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
@@ -271,14 +314,6 @@ def _between(
     at: PerT, seconds: PerRow, values: Float[np.ndarray, "row value"]
 ) -> Float[np.ndarray, "t value"]:
     return np.column_stack([np.interp(at, seconds, column) for column in values.T])
-
-
-def _shelter(velocity: Float[np.ndarray, "t 2"], way: CurrentTruth) -> Float[np.ndarray, "t 2"]:
-    """Slowed and turned on its way, smoothly by direction."""
-    to = compass(velocity)
-    factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
-    turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
-    return towards(np.linalg.norm(velocity, axis=1) * factor, to + turn)
 
 
 def _swing(to: PerT, least: float, most: float, most_to: float) -> PerT:

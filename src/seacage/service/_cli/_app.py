@@ -22,9 +22,9 @@ from seacage.service._cli import (
     _token,
     _train,
 )
-from seacage.service._cli._cage import _check, _draw, _new
+from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
-from seacage.service._cli._rov import _clearance, _inspect
+from seacage.service._cli._rov import _commands
 
 app = typer.Typer(
     name="seacage",
@@ -64,7 +64,7 @@ def _options(
 _cage = typer.Typer(help="A cage's file: write one, check it, draw it.")
 _cage.command()(_new.new)
 _cage.command()(_check.check)
-_cage.command()(_draw.draw)
+_cage.command()(_check.draw)
 
 app.add_typer(_cage, name="cage")
 app.command()(_settle.settle)
@@ -77,8 +77,8 @@ app.command()(_score.score)
 app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
-app.command()(_clearance.clearance)
-app.command("inspect-path")(_inspect.inspect_path)
+app.command()(_commands.clearance)
+app.command("inspect-path")(_commands.inspect_path)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_archive.group, name="archive")

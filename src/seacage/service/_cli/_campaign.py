@@ -241,23 +241,20 @@ def _report_status(store: Path, reached: "CampaignStatus") -> None:
 
     about, ends = asdict(reached), [result.name.lower() for result in Result]
     failures = [{"case": case, "reason": reason} for case, reason in reached.failures.items()]
+    summed = reached.finished or reached.done < reached.total
+    unsummed = ", not summed: say `seacage campaign finish`"
     report(
         {"store": str(store), "origin": "computed", **about, "done": reached.done}
         | {"failures": failures, "core_seconds": round(reached.core_seconds, 2)}
         | {"simulated_s_per_core_second": round(reached.pace, 1)},
         rows=[
             ("Campaign", f"{store}: plan {reached.plan}, {reached.method}, {reached.law}"),
-            ("Done", f"{reached.done} of {reached.total}{_pending_checksums(reached)}"),
+            ("Done", f"{reached.done} of {reached.total}{'' if summed else unsummed}"),
             *((name.replace("_", " "), str(about[name])) for name in ends),
             *_pace(reached),
             *_failure_rows(reached),
         ],
     )
-
-
-def _pending_checksums(reached: "CampaignStatus") -> str:
-    waiting = reached.done == reached.total and not reached.finished
-    return ", not summed: say `seacage campaign finish`" if waiting else ""
 
 
 def _pace(reached: "CampaignStatus") -> list[tuple[str, str]]:

@@ -47,9 +47,8 @@ class Exit(IntEnum):
 
 EXIT_CODES = (
     "Exit codes: 0 done; 1 the input was refused; 2 the command line was not understood, or a file "
-    "that it names makes no sense; "
-    "3 the work failed; 4 a bound that was given is exceeded; 130 interrupted; 141 whoever read "
-    "the output stopped reading."
+    "that it names makes no sense; 3 the work failed; 4 a bound that was given is exceeded; 130 "
+    "interrupted; 141 whoever read the output stopped reading."
 )
 
 

@@ -42,8 +42,9 @@ def doctor(
         store: postgresql://user@host/name, or a file. [default: that in --data]
         port: The service's port.
     """
-    found = {
-        "Python": _python(),
+    machine = f"{platform.system()} {platform.machine()}"
+    found: dict[str, Found] = {
+        "Python": ("ok", f"{platform.python_version()} on {machine}"),
         "Physics kernel": _physics(),
         "Store": _store(),
         "Stored rows": _rows(store or str(data / "samples.sqlite")),
@@ -55,10 +56,6 @@ def doctor(
     }
     findings = [Finding(what=what, state=one[0], message=one[1]) for what, one in found.items()]
     report_findings("doctor", findings, code=Exit.FAILED)
-
-
-def _python() -> Found:
-    return "ok", f"{platform.python_version()} on {platform.system()} {platform.machine()}"
 
 
 def _physics() -> Found:

@@ -20,22 +20,22 @@ def report_responses(
     cage: "Cage | Structure", response: "Response", laws: Sequence[str], about: Mapping[str, object]
 ) -> None:
     """Print the bands of equilibria, one for each law."""
-    bands = _Bands(laws)
+    bands = _Bands(cage, laws)
     tensions = zip(response.line_names, response.line_tension.T / 1e3, strict=True)
     answer = {
         "net_load_kn": bands.of("Load on the net", _size(response.net_force) / 1e3, "kN"),
         "volume_fraction": bands.of("Volume kept", response.volume_fraction, ""),
         "lines": {name: {"tension_kn": bands.of(name, each, "kN")} for name, each in tensions},
-        "depth_m": bands.of_depths(cage, response.node_position),
+        "depth_m": bands.of_depths(response.node_position),
     }
-    _report("settle", cage, response.result, about, answer, bands)
+    bands.report("settle", response.result, about, **answer)
 
 
 def report_histories(
     cage: "Cage | Structure", history: "History", laws: Sequence[str], about: Mapping[str, object]
 ) -> None:
     """Print the bands of histories in the same waves, one for each law."""
-    bands, lines = _Bands(laws), history.lines
+    bands, lines = _Bands(cage, laws), history.lines
     columns = {
         "mean_kn": ("mean", lines.tension.mean),
         "maximum_kn": ("largest", lines.tension.maximum),
@@ -51,39 +51,16 @@ def report_histories(
             }
             for line, name in enumerate(lines.names)
         },
-        "depth_m": bands.of_depths(cage, history.node.mean),
+        "depth_m": bands.of_depths(history.node.mean),
     }
-    _report("simulate", cage, history.result, about, answer, bands)
-
-
-def _report(
-    command: str,
-    cage: "Cage | Structure",
-    results: np.ndarray,
-    about: Mapping[str, object],
-    answer: Mapping[str, object],
-    bands: "_Bands",
-) -> None:
-    """Print the bands, and fail where a law has no sound answer."""
-    from seacage.conventions import RESULTS, Result, has_answer
-
-    by_law = dict(zip(bands.laws, map(int, results), strict=True))
-    about = {"cage": cage.name, "origin": "computed", **about, "result": by_law}
-    report({**about, **answer}, rows=bands.rows)
-    wrong = [
-        f"{law}: {RESULTS[Result(code)]}"
-        for law, code in by_law.items()
-        if not has_answer(np.array(code))
-    ]
-    if wrong:
-        raise exit_with(f"{command}: {'; '.join(wrong)}.", Exit.FAILED)
+    bands.report("simulate", history.result, about, **answer)
 
 
 class _Bands:
     """Collects the rows of a table while the bands of its quantities are made."""
 
-    def __init__(self, laws: Sequence[str]) -> None:
-        self.laws = laws
+    def __init__(self, cage: "Cage | Structure", laws: Sequence[str]) -> None:
+        self.cage, self.laws = cage, laws
         self.rows = [("", " lowest central highest")]
 
     def of(self, name: str, values: Values, unit: str) -> Mapping[str, Any]:
@@ -97,14 +74,24 @@ class _Bands:
         named = zip(("lowest", "central", "highest"), map(_number, band), strict=True)
         return {**dict(named), "by_law": dict(zip(self.laws, map(_number, values), strict=True))}
 
-    def of_depths(
-        self, cage: "Cage | Structure", position: Float[np.ndarray, "law node 3"]
-    ) -> Mapping[str, Mapping[str, Any]]:
-        """The bands of the depths of a cage's sensors."""
-        return {
-            one.name: self.of(one.name, -position[:, one.node, 2], "m")
-            for one in cage.depth_sensors
-        }
+    def of_depths(self, position: Float[np.ndarray, "law node 3"]) -> Mapping[str, object]:
+        """The bands of the depths of the cage's sensors."""
+        sensors = self.cage.depth_sensors
+        return {one.name: self.of(one.name, -position[:, one.node, 2], "m") for one in sensors}
+
+    def report(
+        self, command: str, results: np.ndarray, about: Mapping[str, object], **answer: object
+    ) -> None:
+        """Print the bands, and fail where a law has no sound answer."""
+        from seacage.conventions import RESULTS, Result, has_answer
+
+        by_law = dict(zip(self.laws, map(int, results), strict=True))
+        about = {"cage": self.cage.name, "origin": "computed", **about, "result": by_law}
+        report({**about, **answer}, rows=self.rows)
+        unsound = [law for law, code in by_law.items() if not has_answer(np.array(code))]
+        if unsound:
+            wrong = "; ".join(f"{law}: {RESULTS[Result(by_law[law])]}" for law in unsound)
+            raise exit_with(f"{command}: {wrong}.", Exit.FAILED)
 
 
 def _number(value: float) -> float | None:

@@ -1,5 +1,6 @@
 """``seacage settle``: one sea state."""
 
+from itertools import chain, repeat
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
@@ -104,17 +105,11 @@ def _rows(cage: "Cage | Structure", response: "Response") -> list[tuple[str, str
         ("Bottom", f"{bottom:.2f} m deep, {lift:+.2f} m against still water"),
         ("Residual", f"{response.residual:.2f} N at the worst node"),
     ]
-    tensions = zip(cage.bridle_names, response.bridle_tension, cage.bridle_capacity, strict=True)
+    capacities = chain(cage.bridle_capacity, repeat(0.0))  # the bridles come first
+    tensions = zip(response.line_names, response.line_tension, capacities, strict=False)
     rows += [
         (n, f"{load / 1e3:6.1f} kN" + (f", {load / most:.0%} of capacity" if most > 0.0 else ""))
         for n, load, most in tensions
-    ]
-    others = slice(cage.bridle_count, None)
-    rows += [
-        (name, f"{load / 1e3:6.1f} kN")
-        for name, load in zip(
-            response.line_names[others], response.line_tension[others], strict=True
-        )
     ]
     depth = -response.node_position[:, 2]
     return rows + [(one.name, f"{depth[one.node]:6.2f} m") for one in cage.depth_sensors]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from seacage.campaigns._virtual_field._interpolation import Even
+from seacage.campaigns._virtual_field._weather import Even
 from seacage.conventions import InputError
 
 WHOLE = Even(step=2.0, values=np.random.default_rng(0).normal(size=(50, 3)))

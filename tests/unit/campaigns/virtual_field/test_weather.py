@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from seacage.campaigns import TruthParameters, generated_current
+from seacage.campaigns._buoy_records import generated_waves
 from seacage.campaigns._virtual_field._weather import Weather, current_at_cage, true_weather
-from seacage.campaigns._waves import generated_waves
 from seacage.conventions import Flag, InputError, Origin, compass
 from seacage.ocean import on_current
 from seacage.records import Record

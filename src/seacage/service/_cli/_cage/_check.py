@@ -1,15 +1,17 @@
-"""``seacage cage check``: what is wrong or odd in a cage's file, and its derived numbers."""
+"""``seacage cage check`` and ``draw``: a cage's file, its derived numbers and its drawing."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, report, wants_json
-from seacage.service._cli._options import warn
+from seacage.service._cli._console import Exit, exit_with, guard, refusal, report, wants_json
+from seacage.service._cli._options import read_cage, warn
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
+
+_ENDINGS = (".png", ".svg", ".pdf")
 
 
 @guard
@@ -59,3 +61,29 @@ def _still_water_faults(cage: "Cage") -> list[str]:
     except InputError as error:
         return [str(error)]
     return [f"in still water: {RESULTS[Result(int(result))]}"] if result else []
+
+
+@guard
+def draw(
+    cage: Annotated[str, typer.Argument(metavar="FILE")],
+    *,
+    out: Annotated[Path, typer.Option("--out", "-o", dir_okay=False, metavar="PICTURE")],
+) -> None:
+    """Draw a cage from the side and from above, with its dimensions and the names of its parts.
+
+    Lengths are in m, north is up, and the arrow is where the prevailing current goes.
+
+    Example:
+        seacage cage draw mine.toml --out mine.png
+
+    Options:
+        cage: The cage's file, or a cage that comes with seacage.
+        out: The picture: its ending is .png, .svg or .pdf.
+    """
+    from seacage.figures import cage_drawing_figure, write_figure
+
+    if out.suffix not in _ENDINGS:
+        raise refusal(f"--out {out}: a drawing ends in {', '.join(_ENDINGS)}. Name it so.")
+    drawn = read_cage(cage)
+    write_figure(cage_drawing_figure(drawn), out)
+    report({"written": str(out), "cage": drawn.name}, rows=[("Written", str(out))])

@@ -1,4 +1,4 @@
-"""Records of waves: one made from weather and chance, and a real winter brought to a site."""
+"""Buoys' records of currents and waves: made from tides, weather and chance, or a real winter's."""
 
 import math
 from datetime import datetime
@@ -6,13 +6,20 @@ from datetime import datetime
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
-from seacage.campaigns._noise import wandering
 from seacage.conventions import GRAVITY, InputError, Origin, compass, towards
 from seacage.ocean import steepness_limit
 from seacage.records import Record, check_record, instant
 
 AnyPerRow = Shaped[np.ndarray, " row"]
 _HOUR = 3600.0
+# Period [h], and half-axes of the current's ellipse along and across the stream [m/s]
+_TIDES = {"M2": (12.4206012, 0.62, 0.08), "S2": (12.0, 0.20, 0.03), "K1": (23.9344696, 0.14, 0.03)}
+
+# Where the flood goes, clockwise from north: along the long axis of the ellipses [deg]
+_STREAM_TO = 20.0
+
+_DRIFT = 0.10  # mean current along the stream [m/s]
+
 _KEYS = ("hs_m", "tp_s", "wave_from_deg")
 _HEIGHT = (0.5, 0.58, 3.0)  # median of Hs [m], spread of its logarithm, and the most [m]
 # Tp / (5 sqrt(Hs)): its least, the median above that, and the spread of that one's logarithm. Near
@@ -23,6 +30,79 @@ _SWELL = -0.6  # correlation of height and relative period: a low sea is mostly 
 _MEMORY = 40.0 * _HOUR  # of the weather [s]
 _FROM = 250.0  # where the weather comes from on average, clockwise from north [deg]
 _LONGEST_GAP = 12.0 * _HOUR  # in a winter that has it all [s]
+
+
+def wandering(
+    rng: np.random.Generator, steps: int, *, sd: float, step_s: float, memory_s: float
+) -> Float[np.ndarray, "step 2"]:
+    """A stationary Ornstein–Uhlenbeck vector, sampled exactly.
+
+    ``rng``: source of chance. ``steps``: how many samples. ``sd``: of each component [any unit,
+    kept]. ``step_s``, ``memory_s``: time between samples, and in which the correlation falls to 1/e
+    [s].
+
+    Source: Uhlenbeck and Ornstein (1930); its samples are an AR(1) series.
+    """
+    from scipy.signal import lfilter
+
+    kept = np.exp(-step_s / memory_s)
+    shocks = rng.normal(scale=sd * np.sqrt(1.0 - kept**2), size=(steps, 2))
+    shocks[0] = rng.normal(scale=sd, size=2)
+    return np.asarray(lfilter([1.0], [1.0, -kept], shocks, axis=0))
+
+
+def generated_current(
+    seed: int, *, start: datetime, days: float = 50.0, every_s: float = 720.0
+) -> Record:
+    """A buoy's current record with tides, weather and turbulence, as a buoy would report it.
+
+    The tides are ellipses of M2, S2 and K1 with phases drawn from the seed, so springs
+    follow neaps; the weather wanders over days, the turbulence over minutes. The buoy adds
+    its own error (0.015 m/s, 3 degrees) and rounds to 0.1 cm/s and 1 degree. With the
+    default sizes the mean speed is near 0.45 m/s and a few values pass 1 m/s. It is no
+    place's climate: origin "virtual field".
+
+    Parameters
+    ----------
+    seed
+        Of phases, weather and noise.
+    start
+        Time of the first value, with its zone.
+    days
+        Length of the record.
+    every_s
+        Time between values [s].
+
+    Source: periods of the constituents: Doodson (1921).
+    """
+    steps = int(days * 24.0 * _HOUR / every_s)
+    if steps < 1:
+        raise InputError(f"generated_current: {days:g} days hold no step of {every_s:g} s.")
+    rng = np.random.default_rng(seed)
+    time = np.arange(steps) * every_s
+    along, across = (_tide(rng, time) + np.array([_DRIFT, 0.0])).T
+    to = np.full(steps, _STREAM_TO)
+    stream = towards(along, to) + towards(across, to + 90.0)
+    weather = wandering(rng, steps, sd=0.09, step_s=every_s, memory_s=36.0 * _HOUR)
+    turbulence = wandering(rng, steps, sd=0.03, step_s=every_s, memory_s=0.5 * _HOUR)
+    velocity = stream + weather + turbulence
+    speed = np.linalg.norm(velocity, axis=1) + rng.normal(scale=0.015, size=steps)
+    direction = compass(velocity) + rng.normal(scale=3.0, size=steps)
+    values = {
+        "current_speed_m_s": np.round(np.maximum(speed, 0.0), 3),
+        "current_to_deg": np.round(direction) % 360.0,
+    }
+    note = f"A generated current: tide, weather and noise from seed {seed}."
+    return _buoy_record(start, time, values, note)
+
+
+def _tide(rng: np.random.Generator, time: Float[np.ndarray, " t"]) -> Float[np.ndarray, "t 2"]:
+    """Velocity along and to the right of the stream [m/s]."""
+    velocity = np.zeros((len(time), 2))
+    for period, along, across in _TIDES.values():
+        phase = 2.0 * np.pi * (time / (period * _HOUR) + rng.uniform())
+        velocity += np.column_stack([along * np.cos(phase), across * np.sin(phase)])
+    return velocity
 
 
 def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record:
@@ -47,18 +127,24 @@ def generated_waves(seed: int, *, start: datetime, days: float = 50.0) -> Record
     least, above, width = _PERIOD
     long = _SWELL * high + math.sqrt(1.0 - _SWELL**2) * own
     tp = 5.0 * np.sqrt(hs) * (least + above * np.exp(width * long))
-    record = Record(
-        stream="buoy-1",
-        time=instant(start) + (np.arange(steps) * _HOUR * 1e6).astype("timedelta64[us]"),
-        values={
-            "hs_m": np.round(hs, 2),
-            "tp_s": np.round(tp, 1),
-            "wave_from_deg": np.round(compass(wind + towards(np.array(1.0), np.array(_FROM)))),
-        },
-        origin=Origin.VIRTUAL_FIELD,
-        notes=(f"Generated waves: weather from seed {seed}.",),
+    values = {
+        "hs_m": np.round(hs, 2),
+        "tp_s": np.round(tp, 1),
+        "wave_from_deg": np.round(compass(wind + towards(np.array(1.0), np.array(_FROM)))),
+    }
+    note = f"Generated waves: weather from seed {seed}."
+    return _buoy_record(start, np.arange(steps) * _HOUR, values, note)
+
+
+def _buoy_record(
+    start: datetime, seconds: AnyPerRow, values: dict[str, np.ndarray], note: str
+) -> Record:
+    """A generated record, checked as any."""
+    time = instant(start) + (seconds * 1e6).astype("timedelta64[us]")
+    origin = Origin.VIRTUAL_FIELD
+    return check_record(
+        Record(stream="buoy-1", time=time, values=values, origin=origin, notes=(note,))
     )
-    return check_record(record)
 
 
 def waves_at_site(
@@ -84,13 +170,11 @@ def waves_at_site(
     """
     kept = _usable(record)
     time = record.time[kept]
-    shift = _shift(time, buoy_time[0], buoy_time[-1], stream=record.stream)
-    first = np.searchsorted(time, buoy_time[0] - shift, side="right") - 1
-    last = np.searchsorted(time, buoy_time[-1] - shift) + 1
-    values = {key: record.values[key][kept][first:last] for key in _KEYS}
+    shift, rows = _same_days(time, buoy_time[0], buoy_time[-1], stream=record.stream)
+    values = {key: record.values[key][kept][rows] for key in _KEYS}
     hs = np.minimum(values["hs_m"] * factor, most)
     tp = np.maximum(values["tp_s"], shortest_period(hs))
-    begun = time[first].astype("datetime64[m]")
+    begun = time[rows.start].astype("datetime64[m]")
     lengthened = np.mean(tp > values["tp_s"])
     note = (
         f"Waves of {record.stream} ({record.origin}) from {begun}Z on, moved by "
@@ -99,9 +183,9 @@ def waves_at_site(
     )
     return Record(
         stream=record.stream,
-        time=time[first:last] + shift,
+        time=time[rows] + shift,
         values={**values, "hs_m": hs, "tp_s": tp},
-        flags={key: record.flags[key][kept][first:last] for key in _KEYS},
+        flags={key: record.flags[key][kept][rows] for key in _KEYS},
         origin=Origin.VIRTUAL_FIELD,
         notes=(note,),
     )
@@ -140,26 +224,20 @@ def _usable(record: Record) -> Bool[np.ndarray, " row"]:
     return np.logical_and.reduce([record.usable(key) for key in _KEYS])
 
 
-def _shift(
+def _same_days(
     time: AnyPerRow, start: np.datetime64, end: np.datetime64, *, stream: str
-) -> np.timedelta64:
-    """From the first year whose same days have no long gap to the days wanted."""
+) -> tuple[np.timedelta64, slice]:
+    """Shift from the first year whose same days have no long gap to those wanted, and its rows."""
     new_year = start.astype("datetime64[Y]")
     years = np.unique(time.astype("datetime64[Y]"))
     for year in years:
         shift = new_year.astype(start.dtype) - year.astype(start.dtype)
-        if _has(time, start - shift, end - shift):
-            return shift
+        first = int(np.searchsorted(time, start - shift, side="right")) - 1
+        last = int(np.searchsorted(time, end - shift))
+        gaps = np.diff(time[max(first, 0) : last + 1]) / np.timedelta64(1, "s")
+        if first >= 0 and last < len(time) and gaps.max(initial=0.0) <= _LONGEST_GAP:
+            return shift, slice(first, last + 1)
     raise InputError(
         f"{stream}: in none of {len(years)} years has it the waves from {start}Z to {end}Z, day "
         f"by day without a gap over {_LONGEST_GAP / _HOUR:g} h. Give a longer record of waves."
     )
-
-
-def _has(time: AnyPerRow, start: np.datetime64, end: np.datetime64) -> bool:
-    first = np.searchsorted(time, start, side="right") - 1
-    last = np.searchsorted(time, end)
-    if first < 0 or last == len(time):
-        return False
-    gaps = np.diff(time[first : last + 1]) / np.timedelta64(1, "s")
-    return bool(gaps.max(initial=0.0) <= _LONGEST_GAP)
