@@ -31,10 +31,9 @@ from seacage.service._http._history import history_between
 from seacage.service._live._answers import sample_of, shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas import _samples as schemas
+from seacage.service._schemas._base import Health
 from seacage.service._schemas._cages import Cages, Topology
-from seacage.service._schemas._history import History
-from seacage.service._schemas._service import Health
-from seacage.service._schemas._state import Shape, State
+from seacage.service._schemas._state import History, Shape, State
 
 _TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}

@@ -7,8 +7,7 @@ from fastapi import Depends, HTTPException, Path, Query, Request
 from seacage.service._auth._authorization import Permit, gate_of
 from seacage.service._auth._token_store import Grant
 from seacage.service._live._cage import LiveCage
-from seacage.service._schemas._base import Reach
-from seacage.service._schemas._service import Problem
+from seacage.service._schemas._base import Problem, Reach
 
 Responses = dict[int | str, dict[str, Any]]
 

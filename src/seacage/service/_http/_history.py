@@ -13,8 +13,8 @@ from seacage.records import Sample
 from seacage.service._export import join_answers, replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._past import buoy_record
-from seacage.service._schemas._history import History, Measured
 from seacage.service._schemas._samples import AggregateOut
+from seacage.service._schemas._state import History, Measured
 from seacage.service._store._aggregates import WIDTHS_S
 from seacage.service._store._store import Store
 from seacage.twin import Answer, Twin

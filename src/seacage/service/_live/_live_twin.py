@@ -7,8 +7,7 @@ from datetime import datetime, timedelta
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk
-from seacage.service._live._clock import Clock, floor_time
-from seacage.service._live._clock_faults import ClockFaults, Step
+from seacage.service._live._clock import Clock, ClockFaults, Step, floor_time
 from seacage.service._live._damage import DamageCounter
 from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold

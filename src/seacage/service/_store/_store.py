@@ -1,9 +1,9 @@
 """The live store: every sample once, on disk before it is acknowledged."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
-from contextlib import suppress
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
@@ -19,22 +19,56 @@ from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
 from seacage.service._store._damage import Stretch, begin_damage, cut_begins, damage_of, keep_damage
 from seacage.service._store._database._checksum import CHECKED, Damage
-from seacage.service._store._database._open import database_at, look_into
 from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, microseconds
-from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
+from seacage.service._store._database._session import (
+    AbstractDatabase,
+    AbstractSession,
+    DamageError,
+    StoreError,
+)
+from seacage.service._store._database._sqlite import SqliteDatabase, sqlite_look
 from seacage.service._store._days import retire_days
 from seacage.service._store._quality import newest_keys
 from seacage.service._store._samples import Append, Stored, reinstate_samples, withdraw_samples
 from seacage.service._store._write_queue import Writer
 from seacage.twin import AlarmEvent
 
-__all__ = ["Store", "StoreError", "look_into", "open_store"]
+__all__ = ["Store", "StoreError", "database_at", "look_into", "open_store"]
 P = ParamSpec("P")
 T = TypeVar("T")
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
 _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
 _TABLES = (*CHECKED, "tally")
+
+
+def database_at(place: Path | str) -> AbstractDatabase:
+    """Open a database to write in, made where there is none."""
+    if _is_server(place):
+        from seacage.service._store._database._postgres import PostgresDatabase
+
+        return PostgresDatabase(str(place))
+    return SqliteDatabase(Path(place))
+
+
+@contextmanager
+def look_into(place: Path | str) -> Generator[AbstractSession]:
+    """Read one moment of a store that a service may be writing.
+
+    ``place``: as for ``open_store``, but there already.
+
+    Raises StoreError: it cannot be read.
+    """
+    if _is_server(place):
+        with closing(database_at(place)) as database, database.reading() as session:
+            yield session
+    else:
+        with sqlite_look(Path(place)) as session:
+            yield session
+
+
+def _is_server(place: Path | str) -> bool:
+    return isinstance(place, str) and place.startswith(("postgresql://", "postgres://"))
 
 
 def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
