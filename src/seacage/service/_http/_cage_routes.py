@@ -28,7 +28,7 @@ from seacage.service._http._dependencies import (
     may_read_rows,
 )
 from seacage.service._http._history import history_between
-from seacage.service._live._answers import sample_of, shape_of, summary_of
+from seacage.service._live._answers import shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas import _samples as schemas
 from seacage.service._schemas._base import Health
@@ -121,7 +121,8 @@ def get_samples(
 def get_latest(live: Live, at: At = None) -> schemas.SamplesOut:
     """Give back the newest sample of every stream, in one call."""
     latest = live.store.latest(live.name, at=at)
-    return schemas.SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+    samples = [latest[stream] for stream in sorted(latest)]
+    return schemas.SamplesOut.model_validate({"samples": samples})
 
 
 @cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
@@ -189,8 +190,8 @@ def _samples_text(samples: Sequence[Sample]) -> Iterator[str]:
     """Write samples as JSON, some hundred at a time."""
     yield '{"samples":['
     for first in range(0, len(samples), _TOGETHER):
-        some = samples[first : first + _TOGETHER]
-        yield "," * (first > 0) + ",".join(sample_of(one).model_dump_json() for one in some)
+        some = map(schemas.SampleOut.model_validate, samples[first : first + _TOGETHER])
+        yield "," * (first > 0) + ",".join(one.model_dump_json() for one in some)
     yield "]}"
 
 

@@ -19,7 +19,6 @@ from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._live._damage import LineDamage
 from seacage.service._schemas import _cages as schemas
 from seacage.service._schemas import _state as states
-from seacage.service._schemas._samples import SampleOut
 from seacage.twin import (
     NO_PARTED_LINES,
     Answer,
@@ -346,11 +345,6 @@ def _series(one: Output) -> states.Series:
         upper=_column(one.upper),
         interval_reason=interval_reason(known=one.calibrated),
     )
-
-
-def sample_of(sample: Sample) -> SampleOut:
-    """Say what is stored of a sample."""
-    return SampleOut.model_validate(sample)
 
 
 def _water(metocean: Metocean | None) -> states.Water | None:
