@@ -10,7 +10,6 @@ from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import Damage, checksum
 from seacage.service._store._database._pool import Pool, close_on_error
 from seacage.service._store._database._rows import Row, microseconds, moment_of
-from seacage.service._store._database._schema import tables, upgrade
 
 if TYPE_CHECKING:
     from psycopg import Connection
@@ -194,12 +193,12 @@ class PostgresDatabase(_session.AbstractDatabase):
         with self._writer.transaction():
             self._writer.execute(_LOCK)
             there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
-            for statement in (*tables(_WORDS), _BRIN):
+            for statement in (*_session.tables(_WORDS), _BRIN):
                 # Even "if not exists" locks a table that is there, against all that write into it.
                 if statement.split()[5] not in there:  # CREATE TABLE IF NOT EXISTS name
                     self._writer.execute(statement.encode())
             checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
-            for statement in upgrade(_WORDS, there - checked):
+            for statement in _session.upgrade(_WORDS, there - checked):
                 self._writer.execute(statement.encode())
             return {name for (name,) in self._writer.execute(_PARTITIONS).fetchall()}
 
