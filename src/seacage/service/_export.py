@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from seacage.dynamics import Response
 
 BLOCK = 512  # rows that are answered and written at once; the shapes of more would crowd the memory
-
 # How the names of those fields of an answer end that are the same in all rows
 _SAME_IN_ALL_ROWS = ("_names", "_units", "_kinds", "_level", "_calibrated")
 _DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}

@@ -39,7 +39,6 @@ _TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
 # How a call documents a frame
 FRAME = body_of(MEDIA_TYPE, "The page's binary message.", schema=BINARY)
-
 _METRICS = 'seacage_samples_total{cage="ace",outcome="accepted"} 42.0\n'
 around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
 cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])

@@ -45,8 +45,6 @@ downloads = APIRouter(
 )
 
 _Part = TypeVar("_Part")
-
-
 _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]. Ask for CSV.")
 
 

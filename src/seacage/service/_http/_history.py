@@ -22,7 +22,6 @@ from seacage.twin import Answer, Twin
 
 # Readings that one history looks at one by one; of more, spans of minutes are looked at
 READ_LIMIT = 10_000
-
 _PAGE = 10_000  # aggregates read at once
 _DECIMALS = 3
 _SPEED = "current_speed_m_s"

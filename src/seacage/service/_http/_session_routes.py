@@ -13,7 +13,6 @@ from seacage.service._http._dependencies import BODY, REFUSED
 from seacage.service._schemas._base import SessionOut, SignIn
 
 sessions = APIRouter(prefix="/session", tags=["session"])
-
 Csrf = Annotated[
     str | None, Header(alias="X-CSRF-Token", max_length=200, description="Of the session.")
 ]

@@ -38,7 +38,6 @@ from seacage.twin import (
 
 # What the tests remember is kept so often; what happens to an alarm is kept at once
 _KEPT_EVERY = timedelta(minutes=1)
-
 _WAITING = 10_000  # lines for a disk that takes none; then the oldest are lost
 _log = structlog.get_logger(__name__)
 

@@ -41,10 +41,8 @@ from seacage.twin import (
 )
 
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
-
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
-
 _log = structlog.get_logger(__name__)
 
 

@@ -38,7 +38,6 @@ Time = Annotated[
     AfterValidator(_of_our_time),
 ]
 
-
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 

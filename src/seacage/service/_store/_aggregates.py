@@ -25,11 +25,9 @@ _EAST, _NORTH = "current_east_m_s", "current_north_m_s"
 _DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
 # What is aggregated: every key but the directions, whose mean would mean nothing
 QUANTITIES = (*(key for key in KEYS if key not in _DIRECTIONS), _EAST, _NORTH)
-
 _USELESS = (Flag.FAIL, Flag.MISSING)
 # Quantity, width [s], t [µs], n, mean, least, most
 Summary = tuple[str, int, int, int, float, float, float]
-
 RESTED = timedelta(seconds=30)  # a span is summed up when nothing has come for it for so long
 _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples each
 _MARKED = "SELECT cage, stream, t FROM mark WHERE touched < ? ORDER BY touched LIMIT ?"

@@ -26,7 +26,6 @@ _COUNT = "SELECT coalesce(sum(n), 0) FROM tally"
 _log = structlog.get_logger(__name__)
 # What is there is newer.
 _PUT = "INSERT INTO {table} VALUES ({places}) ON CONFLICT DO NOTHING"
-
 _PUT_LINE = """
 INSERT INTO journal (cage, t, line, crc) SELECT ?, ?, ?, ?
 WHERE NOT EXISTS (SELECT 1 FROM journal WHERE cage = ? AND t = ? AND line = ?)"""

@@ -27,12 +27,10 @@ _STREAMS = STREAMS + "SELECT stream FROM named WHERE stream IS NOT NULL"  # noqa
 _NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
 _ROWS = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"
 _SEAL = "INSERT INTO sealed VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
-
 # Exactly what was read: a sample that was amended since is left for the next time.
 _DELETE = """
 DELETE FROM sample
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ? AND readings = ? AND remarks = ?"""
-
 _AT_ONCE = 1000  # samples deleted in one transaction: no sample that comes waits for more
 
 

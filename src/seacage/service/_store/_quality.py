@@ -47,7 +47,6 @@ if TYPE_CHECKING:
 
 # Samples between two checkpoints: a start, or a late sample, checks about so many again
 EVERY = 256
-
 _AT_ONCE = 1000
 _HELD = 4 * _AT_ONCE  # entries of a long walk that wait to be written
 _LONGEST_S = 7 * 86_400.0
@@ -62,7 +61,6 @@ _GONE = f"{_SAMPLES} AND t <= ? AND remarks LIKE ? ORDER BY t, seq LIMIT ?"
 _AMEND = """
 UPDATE sample SET readings = ?, remarks = ?, crc = CASE WHEN crc < 0 THEN crc ELSE ? END
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
-
 _MEMORY = "SELECT t, seq, memory, crc FROM quality WHERE cage = ? AND stream = ?"
 _BEFORE = f"{_MEMORY} AND (t < ? OR (t = ? AND seq < ?)) ORDER BY t DESC, seq DESC LIMIT ?"
 _BEHIND = f"{_MEMORY} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"

@@ -53,12 +53,10 @@ _LOCK = "SELECT pg_advisory_xact_lock(hashtext('seacage:' || current_schema()))"
 # It lasts as long as the connection that writes, so who has lost the one can write no more.
 _CLAIM = """
 SELECT pg_try_advisory_lock(hashtextextended('seacage:' || current_schema() || ':' || ?, 0))"""
-
 # A process whose machine has died lets go of its cages within half a minute.
 _KEEPALIVE = (
     "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
 )
-
 _DAMAGED = {"XX001", "XX002"}  # data or an index that is corrupted
 _AGAIN_S = 1.0  # between two attempts to reach a server that does not answer
 _PATIENCE_S = 5

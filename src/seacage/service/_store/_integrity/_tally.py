@@ -8,7 +8,6 @@ from seacage.service._store._database._session import AbstractSession
 
 # Cage, stream and where a UTC day begins [us]; lines of the journal have the stream ''
 Day = tuple[str, str, int]
-
 _ADD = """
 INSERT INTO tally VALUES (?, ?, ?, ?, ?)
 ON CONFLICT (cage, kind, stream, t) DO UPDATE SET n = tally.n + excluded.n"""
