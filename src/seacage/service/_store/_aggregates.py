@@ -16,7 +16,7 @@ from seacage.service._schemas._samples import AggregateOut
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import recount
+from seacage.service._store._integrity._verify import recount
 
 WIDTHS_S = (60, 600)  # of the spans; each divides the next, and the last divides a day
 WIDEST_US = WIDTHS_S[-1] * 1_000_000

@@ -12,8 +12,7 @@ import structlog
 from seacage.service._store._aggregates import WIDEST_US
 from seacage.service._store._database import _session
 from seacage.service._store._integrity._salvage import Found, intact_rows
-from seacage.service._store._integrity._tally import recount
-from seacage.service._store._integrity._verify import AT_ONCE, Read, verify
+from seacage.service._store._integrity._verify import AT_ONCE, Read, recount, verify
 from seacage.service._store._samples import mark
 from seacage.service._store._write_queue import Writer
 

@@ -8,8 +8,7 @@ from seacage.service._store._archive import Archive
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, SampleRow, moment_of, readable
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import recount
-from seacage.service._store._integrity._verify import Read
+from seacage.service._store._integrity._verify import Read, recount
 from seacage.service._store._quality import retire_memory
 from seacage.service._store._samples import STREAMS
 from seacage.service._store._write_queue import Writer

@@ -12,7 +12,7 @@ from seacage.service._store._aggregates import WIDEST_US
 from seacage.service._store._database import _rows
 from seacage.service._store._database._checksum import checksum, with_checksum
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import count_new
+from seacage.service._store._integrity._verify import count_new
 from seacage.service._store._quality import Checked, Key, Of, QualityControl
 from seacage.twin import adapted_at_us
 
