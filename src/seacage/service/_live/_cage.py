@@ -118,9 +118,7 @@ class LiveCage:
         self.rest_position = np.array(self.topology.rest_position_m)
         limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
-        self.live = LiveTwin(
-            name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
-        )
+        self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
         self.snapshot = self._snapshot_of(self.live.answered)
 
     @property

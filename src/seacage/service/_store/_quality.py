@@ -12,9 +12,9 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from functools import cache
 from math import isfinite
-from typing import TYPE_CHECKING
+
+from pydantic import TypeAdapter
 
 from seacage.conventions import Flag
 from seacage.records import (
@@ -41,9 +41,6 @@ from seacage.service._store._database._rows import (
     remarks_text,
 )
 from seacage.service._store._database._session import AbstractSession, DamageError
-
-if TYPE_CHECKING:
-    from pydantic import TypeAdapter
 
 # Samples between two checkpoints: a start, or a late sample, checks about so many again
 EVERY = 256
@@ -74,6 +71,7 @@ DELETE FROM quality WHERE cage = ? AND stream = ? AND t < (
 _SEALED = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t <= ?"
 Key = tuple[int, int]  # time [us] and number: what a sample is known by in its stream
 Of = tuple[str, str]  # cage and stream
+_KEPT = TypeAdapter(tuple[QualityState, dict[str, Key]])  # a memory, as it is written
 _FIRST: Key = (-(2**62), -1)
 _END: Key = (2**62, 2**62)
 
@@ -292,12 +290,12 @@ class _Stream:
         if not rows:
             return None
         ((t, seq, text),) = rows
-        quality, newest = _adapter().validate_json(text)
+        quality, newest = _KEPT.validate_json(text)
         return Memory(quality=quality, newest=newest, at=(t, seq))
 
     def keep(self, memory: Memory) -> Memory:
         """Make a checkpoint."""
-        text = _adapter().dump_json((memory.quality, dict(memory.newest))).decode()
+        text = _KEPT.dump_json((memory.quality, dict(memory.newest))).decode()
         self.session.rows(_KEEP, with_checksum("quality", *self.of, *memory.at, text))
         return replace(memory, since=0)
 
@@ -489,10 +487,3 @@ def _amendments(row: SampleRow, sample: Sample) -> Iterator[Amendment]:
 
 def _key(row: SampleRow) -> Key:
     return row[1], row[2]
-
-
-@cache
-def _adapter() -> "TypeAdapter[tuple[QualityState, dict[str, Key]]]":
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(tuple[QualityState, dict[str, Key]])

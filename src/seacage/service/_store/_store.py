@@ -18,14 +18,10 @@ from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
 from seacage.service._store._damage import Stretch
+from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import CHECKED, Damage
 from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, microseconds
-from seacage.service._store._database._session import (
-    AbstractDatabase,
-    AbstractSession,
-    DamageError,
-    StoreError,
-)
+from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
 from seacage.service._store._database._sqlite import SqliteDatabase, sqlite_look
 from seacage.service._store._days import retire_days
 from seacage.service._store._samples import Append, Stored, reinstate_samples, withdraw_samples
@@ -41,7 +37,7 @@ _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
 _TABLES = (*CHECKED, "tally")
 
 
-def database_at(place: Path | str) -> AbstractDatabase:
+def database_at(place: Path | str) -> _session.AbstractDatabase:
     """Open a database to write in, made where there is none."""
     if _is_server(place):
         from seacage.service._store._database._postgres import PostgresDatabase
