@@ -28,8 +28,7 @@ from seacage.records import Sample
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import WallClock
 from seacage.service._live._metrics import Metrics
-from seacage.service._store._database._open import look_into
-from seacage.service._store._store import open_store
+from seacage.service._store._store import look_into, open_store
 from seacage.testing import stand_in_twin
 from seacage.twin import Twin
 

@@ -17,11 +17,10 @@ from seacage.records import Sample
 from seacage.service._store import _samples
 from seacage.service._store._database import _postgres, _sqlite
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._open import database_at
 from seacage.service._store._database._rows import Row, row_of
 from seacage.service._store._database._session import AbstractDatabase
 from seacage.service._store._database._sqlite import sqlite_look
-from seacage.service._store._store import Store, open_store
+from seacage.service._store._store import Store, database_at, open_store
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 STREAMS = [f"depth-{number}" for number in range(1, 31)]

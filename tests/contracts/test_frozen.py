@@ -23,11 +23,12 @@ from seacage.ocean import SeaState
 from seacage.records import FieldRecord, Sample, read_campaign
 from seacage.service._auth._sessions import Sessions
 from seacage.service._auth._token_store import Tokens
-from seacage.service._live._answers import sample_of, state_of
+from seacage.service._live._answers import state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
 from seacage.service._publish._spool import Spool
+from seacage.service._schemas._samples import SampleOut
 from seacage.service._settings import read_settings
 from seacage.service._store._store import open_store
 from seacage.twin import AlarmBook, Twin
@@ -78,7 +79,10 @@ def test_the_twin_knows_in_which_water_its_sensors_trained_it():
 
 
 def test_the_store_has_the_same_samples_and_flags(store):
-    found = [sample_of(one).model_dump(mode="json") for one in store.samples("ace", limit=10_000)]
+    found = [
+        SampleOut.model_validate(one).model_dump(mode="json")
+        for one in store.samples("ace", limit=10_000)
+    ]
     assert found == EXPECTED["store"]["samples"]
     latest = {name: one.t.isoformat() for name, one in store.latest("ace").items()}
     assert latest == EXPECTED["store"]["latest"]
@@ -115,7 +119,10 @@ def test_a_live_cage_goes_on_from_the_store_and_changes_nothing_in_it(store):
         seq=last["seq"],
     )
     assert asyncio.run(cage.take([again])) == (False,)
-    found = [sample_of(one).model_dump(mode="json") for one in store.samples("ace", limit=10_000)]
+    found = [
+        SampleOut.model_validate(one).model_dump(mode="json")
+        for one in store.samples("ace", limit=10_000)
+    ]
     assert found == EXPECTED["store"]["samples"]
 
 
@@ -149,7 +156,9 @@ def test_a_dump_of_postgresql_has_the_same_samples(postgres):
     try:
         found = store.samples("ace", limit=10_000)
         expected = EXPECTED["postgres"]
-        assert [sample_of(one).model_dump(mode="json") for one in found] == expected["samples"]
+        assert [SampleOut.model_validate(one).model_dump(mode="json") for one in found] == expected[
+            "samples"
+        ]
         check_aggregates(store, expected["aggregates"])
     finally:
         store.close()

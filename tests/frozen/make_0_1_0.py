@@ -35,12 +35,13 @@ from seacage.ocean import SeaState
 from seacage.records import Sample
 from seacage.service._auth._sessions import Sessions
 from seacage.service._auth._token_store import Tokens
-from seacage.service._live._answers import sample_of, state_of
+from seacage.service._live._answers import state_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import state_at
 from seacage.service._mqtt._messages import Settled
 from seacage.service._publish._spool import Spool
+from seacage.service._schemas._samples import SampleOut
 from seacage.service._store._store import Store, open_store
 from seacage.testing import stand_in_field, stand_in_twin
 from seacage.twin import Twin
@@ -196,7 +197,9 @@ async def fill_store(folder: Path, twin: Twin) -> dict[str, Any]:
     told = {
         "shown": shown,
         "folded": folded,
-        "samples": [sample_of(one).model_dump(mode="json") for one in all_samples(store)],
+        "samples": [
+            SampleOut.model_validate(one).model_dump(mode="json") for one in all_samples(store)
+        ],
         "latest": {n: s.t.isoformat() for n, s in store.latest("ace").items()},
         "aggregates": aggregates_of(store),
         "alarms": {
@@ -310,7 +313,9 @@ def dump_postgres(path: Path, server: str, twin: Twin) -> dict[str, Any]:
         step(cage)
         wait(cage.store.keep_adapted("ace", cage._state.adapted))
         told = {
-            "samples": [sample_of(one).model_dump(mode="json") for one in all_samples(store)],
+            "samples": [
+                SampleOut.model_validate(one).model_dump(mode="json") for one in all_samples(store)
+            ],
             "aggregates": aggregates_of(store),
             "shown": cage.snapshot.state.model_dump(mode="json"),
         }
@@ -374,7 +379,7 @@ def write_spool(path: Path) -> dict[str, Any]:
     spool.close()
     for left in path.parent.glob(path.name + "-*"):
         left.unlink()
-    kept = [sample_of(one).model_dump(mode="json") for one in samples[5:]]
+    kept = [SampleOut.model_validate(one).model_dump(mode="json") for one in samples[5:]]
     return {"to": to, "place": "row 20", "waiting": kept}
 
 

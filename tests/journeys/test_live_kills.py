@@ -14,8 +14,7 @@ import pytest
 from killable import served
 from mqtt_broker import broker, talking
 from seacage.service._store._database._checksum import with_checksum
-from seacage.service._store._database._open import database_at
-from seacage.service._store._store import open_store
+from seacage.service._store._store import database_at, open_store
 from seacage.testing import stand_in_twin
 from sizes import pick_size
 

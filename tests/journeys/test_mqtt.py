@@ -13,7 +13,7 @@ import pytest
 
 import outside
 from mqtt_broker import broker, talking
-from seacage.service._ingest._shards import worker_of
+from seacage.service._assembly import worker_of
 from seacage.service._store._store import open_store
 from seacage.testing import stand_in_field, stand_in_twin
 from stores import schema

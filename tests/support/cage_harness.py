@@ -65,14 +65,8 @@ class CageHarness:
             self.twin.cage, buoy=self.twin.buoy, timeouts=self.twin.timeouts
         )
         self.desk = AlarmDesk(cage="ace", twin=self.twin, store=self.store, policy=policy)
-        self._live = LiveTwin(
-            name="ace",
-            twin=self.twin,
-            store=self.store,
-            clock=self.clock,
-            desk=self.desk,
-            tick_s=self._tick_s,
-        )
+        past = Past(self.twin, self.store, "ace")
+        self._live = LiveTwin(past, clock=self.clock, desk=self.desk, tick_s=self._tick_s)
         self._arrived = []
 
     def restart(self) -> None:

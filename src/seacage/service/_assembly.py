@@ -1,8 +1,9 @@
 """From settings and twins to a service: its store, cages, guard and feeds put together."""
 
-from collections.abc import Callable, Coroutine, Iterator, Mapping
+from collections.abc import Callable, Coroutine, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from functools import partial
+from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,6 @@ from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
 from seacage.service._ingest._file_feed import FileTail
 from seacage.service._ingest._mqtt_feed import MqttFeed
-from seacage.service._ingest._shards import worker_of
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
@@ -69,6 +69,23 @@ def own_cages(settings: Settings) -> tuple[CageSection, ...]:
     workers = [str(number) for number in range(settings.workers)]
     own = str(settings.worker)
     return tuple(one for one in settings.cages if worker_of(one.name or "", workers) == own)
+
+
+def worker_of(cage: str, workers: Sequence[str]) -> str:
+    """The one worker of a cage, the same in every process.
+
+    When a worker comes or goes, only the cages that it gets or had move.
+
+    ``workers``: the names of all workers, in any order; at least one.
+
+    Source: Thaler & Ravishankar (1998), Using name-based mappings to increase hit rates: the
+    highest random weight.
+    """
+    return max(workers, key=lambda worker: (_weight(cage, worker), worker))
+
+
+def _weight(cage: str, worker: str) -> bytes:
+    return blake2b(f"{cage}\n{worker}".encode(), digest_size=8).digest()
 
 
 def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:

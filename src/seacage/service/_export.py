@@ -27,20 +27,8 @@ if TYPE_CHECKING:
     from seacage.dynamics import Response
 
 BLOCK = 512  # rows that are answered and written at once; the shapes of more would crowd the memory
-
-_SAME_IN_ALL_ROWS = {
-    "bridle_names",
-    "bridle_level",
-    "bridle_calibrated",
-    "sensor_names",
-    "sensor_units",
-    "sensor_level",
-    "shape_level",
-    "depth_std_level",
-    "line_names",
-    "line_kinds",
-    "line_level",
-}
+# How the names of those fields of an answer end that are the same in all rows
+_SAME_IN_ALL_ROWS = ("_names", "_units", "_kinds", "_level", "_calibrated")
 _DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ENDS = {"": "mean", "_lower": "95 %, lower", "_upper": "95 %, upper"}
 Column = list[Any]
@@ -91,7 +79,7 @@ def join_answers(answers: list[Answer]) -> Answer:
     rows = {
         one.name: _join([getattr(answer, one.name) for answer in answers])
         for one in fields(Answer)
-        if one.name not in _SAME_IN_ALL_ROWS
+        if not one.name.endswith(_SAME_IN_ALL_ROWS)
     }
     return replace(answers[0], **rows)
 

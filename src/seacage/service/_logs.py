@@ -8,7 +8,7 @@ from typing import Literal, cast
 
 import structlog
 
-from seacage.service._auth._rates import Rates
+from seacage.service._auth._limits import Rates
 
 
 class _Repeats(logging.Filter):

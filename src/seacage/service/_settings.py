@@ -6,12 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
-from pydantic_settings import (
-    BaseSettings,
-    InitSettingsSource,
-    PydanticBaseSettingsSource,
-    SettingsConfigDict,
-)
+from pydantic_settings import BaseSettings, InitSettingsSource, SettingsConfigDict
 
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.service._auth._limits import Limits
@@ -179,13 +174,8 @@ def _above(table: Mapping[str, Any]) -> type[Settings]:
     class FromFile(Settings):
         @classmethod
         def settings_customise_sources(
-            cls,
-            settings_cls: type[BaseSettings],
-            init_settings: PydanticBaseSettingsSource,
-            env_settings: PydanticBaseSettingsSource,
-            *_: Any,
-            **__: Any,
-        ) -> tuple[PydanticBaseSettingsSource, ...]:
+            cls, settings_cls: Any, init_settings: Any, env_settings: Any, *_: Any, **__: Any
+        ) -> tuple[Any, ...]:
             file = InitSettingsSource(settings_cls, init_kwargs=dict(table))
             return init_settings, env_settings, file
 

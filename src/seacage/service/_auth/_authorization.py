@@ -14,10 +14,8 @@ from fastapi.security.utils import get_authorization_scheme_param
 from starlette.requests import HTTPConnection
 
 from seacage.service._auth._audit import Audit
-from seacage.service._auth._connections import Connections
-from seacage.service._auth._limits import Limits
-from seacage.service._auth._rates import Rates
-from seacage.service._auth._reads import Reads
+from seacage.service._auth._connections import Connections, Reads
+from seacage.service._auth._limits import Limits, Rates
 from seacage.service._auth._sessions import Session, Sessions
 from seacage.service._auth._token_store import Grant, Tokens
 from seacage.service._live._metrics import Metrics

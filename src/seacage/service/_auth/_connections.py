@@ -1,16 +1,20 @@
-"""Open connections: how many one asker may hold, and which gives way where there are too many."""
+"""What one asker may hold: open connections, and rows of long answers in the making."""
 
+import asyncio
 import resource
 from collections import Counter
 from typing import Any
 
 import structlog
+from fastapi import HTTPException
 from starlette.requests import HTTPConnection
 
 from seacage.service._auth._limits import Limits
 from seacage.service._live._metrics import Metrics
 
 _OTHER_FILES = 256  # that a process has open beside its connections, and those about to be counted
+_LOOKS, _PAUSE_S = 10, 0.1  # whoever asks for one answer after the other meets the one before
+_LATER_S = 5  # a long answer takes about as long
 _log = structlog.get_logger(__name__)
 
 
@@ -77,3 +81,37 @@ class Connections:
 def _descriptors() -> int:
     limit, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return 1 << 20 if limit == resource.RLIM_INFINITY else max(16, limit - _OTHER_FILES)
+
+
+class Reads:
+    """A budget of rows for the answers that are being made: their memory and time go with these.
+
+    ``rows`` and ``rows_per_token``: that may be in the making at one time, of all and of one token.
+    """
+
+    def __init__(self, *, rows: int, rows_per_token: int) -> None:
+        self._most, self._most_per_token = rows, rows_per_token
+        self._taken = Counter[str]()
+
+    async def take(self, token: str, rows: int) -> None:
+        """Take rows out of the budget for a while; wait a moment where it is used up.
+
+        Raises HTTPException: 429, with the time to wait.
+        """
+        mine = False
+        for _ in range(_LOOKS):
+            mine = self._taken[token] + rows > self._most_per_token
+            if not mine and self._taken.total() + rows <= self._most:
+                self._taken[token] += rows
+                return
+            await asyncio.sleep(_PAUSE_S)
+        raise HTTPException(
+            429,
+            f"Answers for {'this token' if mine else 'others'} are still being made, and {rows} "
+            f"rows more are too many at a time. Ask again in {_LATER_S} s, or for fewer rows.",
+            {"Retry-After": str(_LATER_S)},
+        )
+
+    def give_back(self, token: str, rows: int) -> None:
+        """Give rows back, once their answer has gone or its reader has."""
+        self._taken = self._taken - Counter({token: rows})  # which forgets a token at 0

@@ -1,10 +1,12 @@
-"""How much one asker may ask."""
+"""How much one asker may ask, and how often: a bucket that fills with time, one per asker."""
 
+from collections import OrderedDict
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field
 
 Origin = Annotated[str, Field(pattern=r"^https?://[A-Za-z0-9.\-\[\]:]+$", max_length=300)]
+_MOST_ASKERS = 10_000
 
 
 class Limits(BaseModel):
@@ -39,3 +41,28 @@ class Limits(BaseModel):
     sessions_per_token: int = Field(default=50, ge=1, le=1000)
     # Pages from elsewhere that may open a live connection, as ``https://farm.example``
     origins: tuple[Origin, ...] = Field(default=(), max_length=100)
+
+
+class Rates:
+    """Token buckets of many askers; those that asked longest ago are forgotten first.
+
+    ``per_s``: how quickly a bucket fills [1/s]. ``burst``: how much it holds [-].
+    """
+
+    def __init__(self, *, per_s: float, burst: float) -> None:
+        self._per_s, self._burst = per_s, burst
+        self._buckets: OrderedDict[str, tuple[float, float]] = OrderedDict()
+
+    def wait_s(self, asker: str, now: float) -> float:
+        """Take one from the bucket; how long to wait [s] where it is empty, else 0.
+
+        ``asker``: whose bucket. ``now``: on a clock that never goes back [s].
+        """
+        held, since = self._buckets.get(asker, (self._burst, now))
+        held = min(self._burst, held + (now - since) * self._per_s)
+        wait_s = 0.0 if held >= 1.0 else (1.0 - held) / self._per_s
+        self._buckets[asker] = (held - (not wait_s), now)
+        self._buckets.move_to_end(asker)
+        if len(self._buckets) > _MOST_ASKERS:
+            self._buckets.popitem(last=False)
+        return wait_s

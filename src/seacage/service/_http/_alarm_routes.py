@@ -35,7 +35,6 @@ Id = Annotated[
     ),
 ]
 
-
 Line = Annotated[
     str, Path(max_length=64, pattern=r"^[A-Za-z0-9][A-Za-z0-9_.\\-]*$", examples=["anchor-3"])
 ]

@@ -43,12 +43,9 @@ _METHODS = ("DELETE", "GET", "PATCH", "POST", "PUT")
 _PACKED = 1000  # the shortest answer that is worth it to compress [bytes]
 # What is packed already, or short and frequent
 _UNPACKED = (*DEFAULT_EXCLUDED_CONTENT_TYPES, MEDIA_TYPE, NETCDF, MCAP)
-
 _log = structlog.get_logger(__name__)
-
 # Where the build puts them; it is not there where no page was built
 PAGE = Path(__file__).parents[1] / "page"
-
 _FOR_EVER = "public, max-age=31536000, immutable"
 
 

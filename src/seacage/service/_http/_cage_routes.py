@@ -28,19 +28,17 @@ from seacage.service._http._dependencies import (
     may_read_rows,
 )
 from seacage.service._http._history import history_between
-from seacage.service._live._answers import sample_of, shape_of, summary_of
+from seacage.service._live._answers import shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas import _samples as schemas
+from seacage.service._schemas._base import Health
 from seacage.service._schemas._cages import Cages, Topology
-from seacage.service._schemas._history import History
-from seacage.service._schemas._service import Health
-from seacage.service._schemas._state import Shape, State
+from seacage.service._schemas._state import History, Shape, State
 
 _TOGETHER = 500  # samples that are written at once
 _HEALTH = {**REFUSED, 503: {"model": Health, "description": "The service cannot do its work."}}
 # How a call documents a frame
 FRAME = body_of(MEDIA_TYPE, "The page's binary message.", schema=BINARY)
-
 _METRICS = 'seacage_samples_total{cage="ace",outcome="accepted"} 42.0\n'
 around = APIRouter(dependencies=[Depends(Permit("read", open_to_loopback=True))], tags=["service"])
 cages = APIRouter(prefix="/api/v1/cages", tags=["cages"])
@@ -122,7 +120,8 @@ def get_samples(
 def get_latest(live: Live, at: At = None) -> schemas.SamplesOut:
     """Give back the newest sample of every stream, in one call."""
     latest = live.store.latest(live.name, at=at)
-    return schemas.SamplesOut(samples=[sample_of(latest[stream]) for stream in sorted(latest)])
+    samples = [latest[stream] for stream in sorted(latest)]
+    return schemas.SamplesOut.model_validate({"samples": samples})
 
 
 @cages.get("/{cage}/aggregates", dependencies=may_read, responses=READ)
@@ -190,8 +189,8 @@ def _samples_text(samples: Sequence[Sample]) -> Iterator[str]:
     """Write samples as JSON, some hundred at a time."""
     yield '{"samples":['
     for first in range(0, len(samples), _TOGETHER):
-        some = samples[first : first + _TOGETHER]
-        yield "," * (first > 0) + ",".join(sample_of(one).model_dump_json() for one in some)
+        some = map(schemas.SampleOut.model_validate, samples[first : first + _TOGETHER])
+        yield "," * (first > 0) + ",".join(one.model_dump_json() for one in some)
     yield "]}"
 
 

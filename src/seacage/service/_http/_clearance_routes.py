@@ -27,11 +27,9 @@ from seacage.service._schemas import _clearance as schemas
 from seacage.twin import PredictedNet
 
 rov = APIRouter(prefix="/api/v1/cages", tags=["rov"], dependencies=may_read)
-
 Stale = Annotated[
     bool, Query(description="Take the last sound reading however old it is.", examples=[False])
 ]
-
 _STALE = refusal(409, "The net is not known, or not now.", "The net is not known now.")
 _LINE = {"type": "LineString", "coordinates": [[8.63, 63.61], [8.64, 63.61]]}
 _MAP = {

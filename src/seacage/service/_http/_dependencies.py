@@ -7,8 +7,7 @@ from fastapi import Depends, HTTPException, Path, Query, Request
 from seacage.service._auth._authorization import Permit, gate_of
 from seacage.service._auth._token_store import Grant
 from seacage.service._live._cage import LiveCage
-from seacage.service._schemas._base import Reach
-from seacage.service._schemas._service import Problem
+from seacage.service._schemas._base import Problem, Reach
 
 Responses = dict[int | str, dict[str, Any]]
 
@@ -98,7 +97,7 @@ Width = Annotated[
     Query(description="Of each span [s].", examples=[600], json_schema_extra={"enum": [60, 600]}),
 ]
 
-may_read, may_ingest = [Depends(Permit("read"))], [Depends(Permit("ingest"))]
+may_read, may_ingest, may_acknowledge = ([Depends(Permit(s))] for s in ("read", "ingest", "ack"))
 PAGE = 2000  # samples that an answer without an end holds at a time
 
 
@@ -112,5 +111,3 @@ async def _costs(request: Request) -> None:
 
 # For calls whose answers are long: they take their rows out of a budget while they are made
 may_read_rows = [*may_read, Depends(_costs)]
-
-may_acknowledge = [Depends(Permit("ack"))]

@@ -5,6 +5,7 @@ import io
 import tempfile
 from collections.abc import Iterator, Sequence
 from datetime import datetime, timedelta
+from functools import partial
 from importlib.util import find_spec
 from itertools import chain
 from pathlib import Path
@@ -39,19 +40,17 @@ downloads = APIRouter(
     prefix="/api/v1/cages",
     tags=["downloads"],
     dependencies=may_read_rows,
+    responses=READ,
     default_response_class=StreamingResponse,
 )
 
 _Part = TypeVar("_Part")
-
-
 _NO_NETCDF = refusal(501, "NetCDF is not installed.", "NetCDF needs seacage[sim]. Ask for CSV.")
 
 
 @downloads.get(
     "/{cage}/samples.csv",
-    responses=READ
-    | body_of(
+    responses=body_of(
         _CSV,
         "A row per value, with its flag.",
         example=f"t,stream,seq,quantity,value,flag\n{EXAMPLE_T},depth-1,7,depth_m,14.2,1\n",
@@ -67,8 +66,7 @@ def download_samples(
 
 @downloads.get(
     "/{cage}/history.csv",
-    responses=READ
-    | body_of(
+    responses=body_of(
         _CSV,
         "A row per reading of the buoy.",
         example=f"time,valid,bridle-1_kn\n{EXAMPLE_T},True,41.2\n",
@@ -84,7 +82,7 @@ def download_history(
 
 @downloads.get(
     "/{cage}/history.nc",
-    responses=READ | body_of(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
+    responses=body_of(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
 )
 def download_netcdf(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000
@@ -124,8 +122,7 @@ def _write_blocks(blocks: Iterator[Replayed]) -> tuple[BinaryIO, int]:
 
 def _pieces(file: BinaryIO) -> Iterator[bytes]:
     with file:
-        while piece := file.read(_PIECE):
-            yield piece
+        yield from iter(partial(file.read, _PIECE), b"")
 
 
 def _attachment(live: LiveCage, name: str) -> dict[str, str]:

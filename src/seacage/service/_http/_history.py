@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from functools import partial
 
 import numpy as np
@@ -12,18 +12,17 @@ from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._export import join_answers, replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
+from seacage.service._live._clock import floor_time
 from seacage.service._live._past import buoy_record
-from seacage.service._schemas._history import History, Measured
 from seacage.service._schemas._samples import AggregateOut
+from seacage.service._schemas._state import History, Measured
 from seacage.service._store._aggregates import WIDTHS_S
 from seacage.service._store._store import Store
 from seacage.twin import Answer, Twin
 
 # Readings that one history looks at one by one; of more, spans of minutes are looked at
 READ_LIMIT = 10_000
-
 _PAGE = 10_000  # aggregates read at once
-_ORIGIN = datetime(1970, 1, 1, tzinfo=UTC)  # of every span
 _DECIMALS = 3
 _SPEED = "current_speed_m_s"
 
@@ -122,7 +121,7 @@ class _Span:
             (width for width in WIDTHS_S if length_s <= width * self.limit), WIDTHS_S[-1]
         )
         width = timedelta(seconds=width_s)
-        since, found = first.t - (first.t - _ORIGIN) % width, list[AggregateOut]()
+        since, found = floor_time(first.t, width), list[AggregateOut]()
         read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)
         while page := read(start=since, end=end, limit=_PAGE):
             found += page

@@ -10,10 +10,9 @@ from seacage.service._auth._authorization import COOKIE, Cookie, check_csrf, gat
 from seacage.service._auth._sessions import Session
 from seacage.service._auth._token_store import Grant
 from seacage.service._http._dependencies import BODY, REFUSED
-from seacage.service._schemas._service import SessionOut, SignIn
+from seacage.service._schemas._base import SessionOut, SignIn
 
 sessions = APIRouter(prefix="/session", tags=["session"])
-
 Csrf = Annotated[
     str | None, Header(alias="X-CSRF-Token", max_length=200, description="Of the session.")
 ]

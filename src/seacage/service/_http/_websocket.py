@@ -16,7 +16,6 @@ _FIRST_MESSAGE_BYTES = 1000
 _REASON_BYTES = 123  # as many as a closing frame holds
 # Codes of a closing: the page tells its reader which it was
 NOT_TEXT, UNKNOWN_TOKEN, NO_SCOPE, NO_CAGE, TOO_LATE, TOO_OFTEN = 1003, 4401, 4403, 4404, 4408, 4429
-
 sockets = APIRouter()
 
 

@@ -15,7 +15,6 @@ from seacage.twin import Answered, Metocean, Twin
 
 # Strength and direction of each kind of input, in the order of the twin's edges
 _KEYS = {"current": ("current_speed_m_s", "current_to_deg"), "waves": ("hs_m", "wave_from_deg")}
-
 _WAVES = ("hs_m", "tp_s", "wave_from_deg")
 what_if = APIRouter(prefix="/api/v1/cages", tags=["cages"])
 

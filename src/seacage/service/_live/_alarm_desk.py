@@ -4,7 +4,7 @@ import json
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import datetime, timedelta
 from functools import partial
 from types import MappingProxyType
@@ -38,7 +38,6 @@ from seacage.twin import (
 
 # What the tests remember is kept so often; what happens to an alarm is kept at once
 _KEPT_EVERY = timedelta(minutes=1)
-
 _WAITING = 10_000  # lines for a disk that takes none; then the oldest are lost
 _log = structlog.get_logger(__name__)
 
@@ -220,11 +219,8 @@ def announcement_json(announcement: Announcement, *, action: str | None = None) 
             "action": action or happened.action.value,
             "t": happened.t.isoformat(),
             "severity": announcement.severity,
-            "title": announcement.text.title,
-            "message": announcement.text.message,
-            "advice": announcement.text.advice,
+            **asdict(announcement.text),
             "value": announcement.alarm.value,
-            "unit": announcement.text.unit,
             "active": announcement.alarm.active,
             "acknowledged": announcement.alarm.acknowledged,
             "since": announcement.alarm.since and announcement.alarm.since.isoformat(),

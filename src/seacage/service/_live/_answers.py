@@ -19,8 +19,6 @@ from seacage.service._export import Output, bridle_outputs, sensor_outputs
 from seacage.service._live._damage import LineDamage
 from seacage.service._schemas import _cages as schemas
 from seacage.service._schemas import _state as states
-from seacage.service._schemas._history import History, Measured, Series
-from seacage.service._schemas._samples import SampleOut
 from seacage.twin import (
     NO_PARTED_LINES,
     Answer,
@@ -313,14 +311,14 @@ def _line_places(cage: Cage, known: tuple[str, ...]) -> list[schemas.LinePlace]:
 def history_of(
     buoy: Record,
     answer: Answer,  # one row each
-    measured: Mapping[str, Measured],  # what each sensor read in the same time
+    measured: Mapping[str, states.Measured],  # what each sensor read in the same time
     *,
     thinned: bool,  # whether the buoy read more often than these readings say
-) -> History:
+) -> states.History:
     """Say what the twin answers to each reading of a buoy."""
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
     lower, upper = answer.volume_interval()
-    return History(
+    return states.History(
         t=times,
         valid=answer.valid.tolist(),
         in_domain=answer.in_domain.tolist(),
@@ -336,8 +334,8 @@ def history_of(
     )
 
 
-def _series(one: Output) -> Series:
-    return Series(
+def _series(one: Output) -> states.Series:
+    return states.Series(
         unit=one.unit,
         level=one.level,
         in_domain=one.in_domain.tolist(),
@@ -347,11 +345,6 @@ def _series(one: Output) -> Series:
         upper=_column(one.upper),
         interval_reason=interval_reason(known=one.calibrated),
     )
-
-
-def sample_of(sample: Sample) -> SampleOut:
-    """Say what is stored of a sample."""
-    return SampleOut.model_validate(sample)
 
 
 def _water(metocean: Metocean | None) -> states.Water | None:

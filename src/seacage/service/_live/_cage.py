@@ -41,10 +41,8 @@ from seacage.twin import (
 )
 
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
-
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
-
 _log = structlog.get_logger(__name__)
 
 
@@ -120,9 +118,7 @@ class LiveCage:
         self.rest_position = np.array(self.topology.rest_position_m)
         limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
         self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
-        self.live = LiveTwin(
-            name=name, twin=twin, store=store, clock=clock, desk=self.desk, tick_s=tick_s
-        )
+        self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
         self.snapshot = self._snapshot_of(self.live.answered)
 
     @property
@@ -179,7 +175,8 @@ class LiveCage:
             self._publish(await asyncio.to_thread(self.live.begin))
 
     async def run(self) -> None:
-        """Step the twin for ever."""
+        """Step the twin for ever, through samples at once: an answer is as old as its step."""
+        step = self._metrics.steps.labels(self.name).time()(self.live.step)
         while True:
             # Not wait_for, which may swallow a cancellation that meets an arrival (Python 3.11).
             with suppress(TimeoutError):
@@ -188,9 +185,8 @@ class LiveCage:
             ticked = not self._arrived.is_set()
             self._arrived.clear()
             async with self._stepping:
-                answered, events = await asyncio.to_thread(
-                    self._step, self._take_pending(), ticked=ticked
-                )
+                pending = self._take_pending()
+                answered, events = await asyncio.to_thread(step, pending, ticked=ticked)
                 self._note(events)
                 self._publish(answered)
             await asyncio.sleep(_GATHERED_S)
@@ -268,13 +264,6 @@ class LiveCage:
         self._waiting = 0
         self._room.set()
         return arrived
-
-    def _step(
-        self, arrived: Sequence[Stored], *, ticked: bool
-    ) -> tuple[Answered, tuple[Event, ...]]:
-        """Step through samples at once, and tick: the answer is as old as this call."""
-        with self._metrics.steps.labels(self.name).time():
-            return self.live.step(arrived, ticked=ticked)
 
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:

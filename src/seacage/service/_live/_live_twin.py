@@ -7,15 +7,13 @@ from datetime import datetime, timedelta
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk
-from seacage.service._live._clock import Clock, floor_time
-from seacage.service._live._clock_faults import ClockFaults, Step
+from seacage.service._live._clock import Clock, ClockFaults, Step, floor_time
 from seacage.service._live._damage import DamageCounter
 from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._samples import Stored
-from seacage.service._store._store import Store
-from seacage.twin import ADAPTATION_BLOCK, Answered, Event, Twin, TwinState, block_begin
+from seacage.twin import ADAPTATION_BLOCK, Answered, Event, TwinState, block_begin
 
 _RESTED = timedelta(seconds=30)  # without late samples, before the intervals are adapted anew
 _AT_ONCE = 6  # blocks of intervals adapted anew in one step
@@ -38,16 +36,15 @@ class LiveTwin:
 
     def __init__(
         self,
+        past: Past,  # of its cage, with the twin and the store
         *,
-        name: str,
-        twin: Twin,
-        store: Store,
         clock: Clock,
         desk: AlarmDesk,  # where its alarms are assessed
         tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
+        name, twin, store = past.cage, past.twin, past.store
         self._name, self._twin, self._store, self._clock = name, twin, store, clock
-        self._desk, self._past = desk, Past(twin, store, name)
+        self._desk, self._past = desk, past
         self._period = timedelta(seconds=tick_s * clock.speed)
         self.damage = DamageCounter(name=name, twin=twin, store=store)
         self.clocks = ClockFaults(clock, streams=len(streams_of(twin)))

@@ -180,11 +180,11 @@ class _Connection:
         self._misc: asyncio.TimerHandle | None = None
         self._watched: Any = None
         client.on_connect = self._on_connect
-        client.on_disconnect = self._on_disconnect
+        client.on_disconnect = lambda _, __, ___, code, ____: self._end(str(code))
         client.on_subscribe = self._on_subscribe
         client.on_socket_register_write = self._on_register_write
         client.on_socket_unregister_write = self._on_unregister_write
-        client.on_socket_close = self._on_socket_close
+        client.on_socket_close = lambda _, __, ___: self._forget()
 
     async def open(self, broker: Broker, properties: Properties) -> None:
         """Reach the broker; its greeting comes later."""
@@ -265,11 +265,6 @@ class _Connection:
         if refused:
             self._end(f"it refuses a subscription: {refused[0]}")
 
-    def _on_disconnect(
-        self, _: Client, __: object, ___: object, code: ReasonCode, *____: Any
-    ) -> None:
-        self._end(str(code))
-
     def _on_register_write(self, _: Client, __: object, ___: object) -> None:
         if self._watched is not None:  # else still connecting, in a thread of its own
             self._loop.add_writer(self._watched, self.client.loop_write)
@@ -277,6 +272,3 @@ class _Connection:
     def _on_unregister_write(self, _: Client, __: object, ___: object) -> None:
         if self._watched is not None:
             self._loop.remove_writer(self._watched)
-
-    def _on_socket_close(self, _: Client, __: object, ___: object) -> None:
-        self._forget()

@@ -131,9 +131,7 @@ class MqttTransport:
         self._settled.clear()
         return settled
 
-    def _on_connect(
-        self, client: Client, _: object, __: object, code: ReasonCode, *___: Any
-    ) -> None:
+    def _on_connect(self, client: Client, _: Any, __: Any, code: ReasonCode, *___: Any) -> None:
         if code.is_failure:
             self._say(refused=str(code))
         else:

@@ -48,7 +48,8 @@ def inspection_answer(
 ) -> schemas.InspectionAnswer:
     """Say where to swim along a net, and where to look."""
     way = inspection_of(net, query)
-    columns = (
+    waypoints = _entries(
+        schemas.Waypoint,
         _round(in_frame(query.frame, way.position)),
         places_of(net.cage, query.frame, way.position),
         way.heading.round(2).tolist(),
@@ -62,7 +63,7 @@ def inspection_answer(
     )
     return schemas.InspectionAnswer(
         **_about(net, query.frame, query.below_m),
-        waypoints=_entries(schemas.Waypoint, *columns),
+        waypoints=waypoints,
         parts=int(way.part[-1]) + 1,
         left_out=way.left_out,
     )

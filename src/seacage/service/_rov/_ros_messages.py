@@ -3,6 +3,7 @@
 import tempfile
 from collections.abc import Mapping, Sequence
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from seacage.conventions import InputError, SeacageError
 
 FRAME_ID = "seacage_enu"  # of all messages: metres east, north and up of the cage's centre
 TRIANGLE_LIST = 11
-_POINT_FLOAT = 7
+_POINT_FLOAT, _FIELDS = 7, ("x", "y", "z", "sigma")
 _LAST_NS = 2**31 * 10**9
 _COLOUR = {"r": 0.2, "g": 0.6, "b": 0.8, "a": 0.5}
 Points = Float[np.ndarray, "point 3"]
@@ -46,21 +47,14 @@ class RosMessages:
         """Nodes with their sigma."""
         values = np.column_stack([position, sigma])
         packed = np.ascontiguousarray(values, dtype="<f4").view(np.uint8).ravel()
+        about = {"datatype": _POINT_FLOAT, "count": 1}
+        field = partial(self._message, "sensor_msgs/msg/PointField", **about)
         return self._message(
             "sensor_msgs/msg/PointCloud2",
             header=self._header(),
             height=1,
             width=len(position),
-            fields=[
-                self._message(
-                    "sensor_msgs/msg/PointField",
-                    name=name,
-                    offset=4 * number,
-                    datatype=_POINT_FLOAT,
-                    count=1,
-                )
-                for number, name in enumerate(("x", "y", "z", "sigma"))
-            ],
+            fields=[field(name=name, offset=4 * k) for k, name in enumerate(_FIELDS)],
             is_bigendian=False,
             point_step=16,
             row_step=16 * len(position),

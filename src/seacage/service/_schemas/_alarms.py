@@ -7,23 +7,21 @@ from typing import Annotated
 from pydantic import Field
 
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
+from seacage.service._schemas._state import AlarmBrief
 from seacage.twin import Alarm, AlarmPolicy, alarm_text
 
 LONGEST_WORDS = 500  # of a reason or a comment [characters]
 
 
-class AlarmState(AbstractAnswer):
+class AlarmState(AlarmBrief):
     """One alarm: what it is about, how it stands and by which limits it is assessed.
 
     ``value``, ``worst``, ``raise_at`` and ``clear_at`` are in ``unit``; ``severity`` runs from 1
     to 1000, critical from 800 on.
     """
 
-    id: str
     kind: str
     source: str
-    title: str
-    message: str
     advice: str
     severity: int
     unit: str
@@ -31,12 +29,8 @@ class AlarmState(AbstractAnswer):
     worst: float | None
     raise_at: float
     clear_at: float
-    active: bool
-    acknowledged: bool
-    shelved: bool
     shelved_until: datetime | None
     in_service: bool
-    since: datetime | None
     comment: str
 
 

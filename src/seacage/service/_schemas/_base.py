@@ -1,4 +1,4 @@
-"""What the JSON bodies share: names, times, and how strictly a body is read."""
+"""What the JSON bodies share, names, times and strictness, and those of the service itself."""
 
 from datetime import UTC, datetime
 from typing import Annotated, Any
@@ -38,7 +38,6 @@ Time = Annotated[
     AfterValidator(_of_our_time),
 ]
 
-
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 
@@ -71,3 +70,30 @@ def with_examples(described: dict[str, Any]) -> dict[str, Any]:
     for name, example in read_packaged_table("seacage.service._schemas", "examples.json").items():
         bodies[name]["examples"] = [example]
     return described
+
+
+class SignIn(AbstractRequest):
+    """A token, given once for a session."""
+
+    token: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class SessionOut(AbstractAnswer):
+    """Who is signed in, and what a write has to repeat in the header X-CSRF-Token."""
+
+    who: str
+    scopes: list[str]
+    csrf: str
+    expires: datetime
+
+
+class Problem(AbstractAnswer):
+    """Why a request was refused, in one sentence."""
+
+    detail: str
+
+
+class Health(AbstractAnswer):
+    """Whether the service lives, and whether it can do its work."""
+
+    status: str

@@ -8,10 +8,8 @@ from pydantic import Field, model_validator
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 
 POINT_LIMIT = 10_000  # points in one request
-
 # Metres east, north, up of the cage's centre; north, east, down; or latitude and longitude
 FrameName = Literal["enu", "ned", "wgs84"]
-
 Metres = Annotated[float, Field(ge=-1e5, le=1e5, allow_inf_nan=False)]
 Triple = Annotated[list[Metres], Field(min_length=3, max_length=3)]
 Below = Annotated[float, Field(ge=0.0, le=100.0)]

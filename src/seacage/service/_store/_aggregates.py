@@ -16,7 +16,7 @@ from seacage.service._schemas._samples import AggregateOut
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import recount
+from seacage.service._store._integrity._verify import recount
 
 WIDTHS_S = (60, 600)  # of the spans; each divides the next, and the last divides a day
 WIDEST_US = WIDTHS_S[-1] * 1_000_000
@@ -25,11 +25,9 @@ _EAST, _NORTH = "current_east_m_s", "current_north_m_s"
 _DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
 # What is aggregated: every key but the directions, whose mean would mean nothing
 QUANTITIES = (*(key for key in KEYS if key not in _DIRECTIONS), _EAST, _NORTH)
-
 _USELESS = (Flag.FAIL, Flag.MISSING)
 # Quantity, width [s], t [µs], n, mean, least, most
 Summary = tuple[str, int, int, int, float, float, float]
-
 RESTED = timedelta(seconds=30)  # a span is summed up when nothing has come for it for so long
 _AT_ONCE = 20  # spans in one transaction: ten minutes at 2 s are 300 samples each
 _MARKED = "SELECT cage, stream, t FROM mark WHERE touched < ? ORDER BY touched LIMIT ?"

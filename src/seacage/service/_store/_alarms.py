@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import Bounds, microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import recount
+from seacage.service._store._integrity._verify import recount
 from seacage.twin import Action, AlarmEvent
 
 _KEEP_BOOK = """

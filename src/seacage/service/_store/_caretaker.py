@@ -12,8 +12,7 @@ import structlog
 from seacage.service._store._aggregates import WIDEST_US
 from seacage.service._store._database import _session
 from seacage.service._store._integrity._salvage import Found, intact_rows
-from seacage.service._store._integrity._tally import recount
-from seacage.service._store._integrity._verify import AT_ONCE, Read, verify
+from seacage.service._store._integrity._verify import AT_ONCE, Read, recount, verify
 from seacage.service._store._samples import mark
 from seacage.service._store._write_queue import Writer
 
@@ -26,7 +25,6 @@ _COUNT = "SELECT coalesce(sum(n), 0) FROM tally"
 _log = structlog.get_logger(__name__)
 # What is there is newer.
 _PUT = "INSERT INTO {table} VALUES ({places}) ON CONFLICT DO NOTHING"
-
 _PUT_LINE = """
 INSERT INTO journal (cage, t, line, crc) SELECT ?, ?, ?, ?
 WHERE NOT EXISTS (SELECT 1 FROM journal WHERE cage = ? AND t = ? AND line = ?)"""

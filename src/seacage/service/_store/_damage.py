@@ -3,7 +3,7 @@
 import json
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 
 from seacage.service._store._alarms import keep_lines
 from seacage.service._store._database._checksum import with_checksum
@@ -53,9 +53,13 @@ def begin_damage(
     keep_lines(session, cage, journal)
 
 
-def cut_begins(session: AbstractSession, cage: str, after: datetime) -> None:
-    """Delete the begins after a time, where the clock went back."""
-    session.rows(_AHEAD, (cage, microseconds(after)))
+def rewind(
+    session: AbstractSession, cage: str, hour: datetime, t: datetime, lines: Sequence[str]
+) -> None:
+    """Forget what is ahead of a clock that went back, as ``Store.rewind_damage`` says."""
+    keep_damage(session, cage, (hour, datetime.max.replace(tzinfo=UTC)), ())
+    session.rows(_AHEAD, (cage, microseconds(t)))
+    begin_damage(session, cage, lines, t, ())
 
 
 def damage_of(

@@ -8,8 +8,7 @@ from seacage.service._store._archive import Archive
 from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, SampleRow, moment_of, readable
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import recount
-from seacage.service._store._integrity._verify import Read
+from seacage.service._store._integrity._verify import Read, recount
 from seacage.service._store._quality import retire_memory
 from seacage.service._store._samples import STREAMS
 from seacage.service._store._write_queue import Writer
@@ -27,12 +26,10 @@ _STREAMS = STREAMS + "SELECT stream FROM named WHERE stream IS NOT NULL"  # noqa
 _NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
 _ROWS = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"
 _SEAL = "INSERT INTO sealed VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
-
 # Exactly what was read: a sample that was amended since is left for the next time.
 _DELETE = """
 DELETE FROM sample
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ? AND readings = ? AND remarks = ?"""
-
 _AT_ONCE = 1000  # samples deleted in one transaction: no sample that comes waits for more
 
 

@@ -12,9 +12,9 @@ from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from functools import cache
 from math import isfinite
-from typing import TYPE_CHECKING
+
+from pydantic import TypeAdapter
 
 from seacage.conventions import Flag
 from seacage.records import (
@@ -42,12 +42,8 @@ from seacage.service._store._database._rows import (
 )
 from seacage.service._store._database._session import AbstractSession, DamageError
 
-if TYPE_CHECKING:
-    from pydantic import TypeAdapter
-
 # Samples between two checkpoints: a start, or a late sample, checks about so many again
 EVERY = 256
-
 _AT_ONCE = 1000
 _HELD = 4 * _AT_ONCE  # entries of a long walk that wait to be written
 _LONGEST_S = 7 * 86_400.0
@@ -62,7 +58,6 @@ _GONE = f"{_SAMPLES} AND t <= ? AND remarks LIKE ? ORDER BY t, seq LIMIT ?"
 _AMEND = """
 UPDATE sample SET readings = ?, remarks = ?, crc = CASE WHEN crc < 0 THEN crc ELSE ? END
 WHERE cage = ? AND stream = ? AND t = ? AND seq = ?"""
-
 _MEMORY = "SELECT t, seq, memory, crc FROM quality WHERE cage = ? AND stream = ?"
 _BEFORE = f"{_MEMORY} AND (t < ? OR (t = ? AND seq < ?)) ORDER BY t DESC, seq DESC LIMIT ?"
 _BEHIND = f"{_MEMORY} AND (t > ? OR (t = ? AND seq > ?)) ORDER BY t, seq LIMIT ?"
@@ -76,6 +71,7 @@ DELETE FROM quality WHERE cage = ? AND stream = ? AND t < (
 _SEALED = "SELECT t, crc FROM sealed WHERE cage = ? AND stream = ? AND t >= ? AND t <= ?"
 Key = tuple[int, int]  # time [us] and number: what a sample is known by in its stream
 Of = tuple[str, str]  # cage and stream
+_KEPT = TypeAdapter(tuple[QualityState, dict[str, Key]])  # a memory, as it is written
 _FIRST: Key = (-(2**62), -1)
 _END: Key = (2**62, 2**62)
 
@@ -294,12 +290,12 @@ class _Stream:
         if not rows:
             return None
         ((t, seq, text),) = rows
-        quality, newest = _adapter().validate_json(text)
+        quality, newest = _KEPT.validate_json(text)
         return Memory(quality=quality, newest=newest, at=(t, seq))
 
     def keep(self, memory: Memory) -> Memory:
         """Make a checkpoint."""
-        text = _adapter().dump_json((memory.quality, dict(memory.newest))).decode()
+        text = _KEPT.dump_json((memory.quality, dict(memory.newest))).decode()
         self.session.rows(_KEEP, with_checksum("quality", *self.of, *memory.at, text))
         return replace(memory, since=0)
 
@@ -491,10 +487,3 @@ def _amendments(row: SampleRow, sample: Sample) -> Iterator[Amendment]:
 
 def _key(row: SampleRow) -> Key:
     return row[1], row[2]
-
-
-@cache
-def _adapter() -> "TypeAdapter[tuple[QualityState, dict[str, Key]]]":
-    from pydantic import TypeAdapter
-
-    return TypeAdapter(tuple[QualityState, dict[str, Key]])

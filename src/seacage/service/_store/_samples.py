@@ -6,13 +6,14 @@ from datetime import datetime
 
 from seacage.conventions import SeacageError
 from seacage.records import AHEAD, DEFAULT_LIMITS, Amendment, Limits, Sample
+from seacage.service._store import _quality
 from seacage.service._store._adaptations import Refold, ask_refold, cut_adaptations
 from seacage.service._store._aggregates import WIDEST_US
 from seacage.service._store._database import _rows
 from seacage.service._store._database._checksum import checksum, with_checksum
 from seacage.service._store._database._session import AbstractSession
-from seacage.service._store._integrity._tally import count_new
-from seacage.service._store._quality import Checked, Key, Of, QualityControl, withdrawn_samples
+from seacage.service._store._integrity._verify import count_new
+from seacage.service._store._quality import Checked, Key, Of, QualityControl
 from seacage.twin import adapted_at_us
 
 # A bucket of a sealed day is left as it is: of its samples only the late ones are still here.
@@ -200,7 +201,7 @@ def reinstate_samples(
     session: AbstractSession, control: QualityControl, of: Of, *, clock: datetime, until: datetime
 ) -> int:
     """Take back that samples of a stream were withdrawn, as ``Store.reinstate`` says; how many."""
-    samples = withdrawn_samples(session, of, clock=clock, until=_rows.microseconds(until))
+    samples = _quality.withdrawn_samples(session, of, clock=clock, until=_rows.microseconds(until))
     checked = {of: control.check(session, of, samples, DEFAULT_LIMITS)}
     rows = [
         _rows.row_of(of[0], sample, until, checked[of].amended.get(key, {}))
@@ -213,12 +214,10 @@ def reinstate_samples(
     return len(rows)
 
 
-def samples_at(
-    session: AbstractSession, cage: str, stream: str, keys: Iterable[Key], *, known_at: datetime
-) -> list[Sample]:
-    """Read some samples of a stream in time order, with the flags known at a time."""
-    rows = [row for key in sorted(keys) for row in _one(session, (cage, stream, *key))]
-    return _read(session, cage, rows, known_at)
+def newest_samples(session: AbstractSession, of: Of, at: datetime) -> list[Sample]:
+    """Read samples as ``Store.newest_of_each`` says, with the flags known at that time."""
+    keys = sorted(_quality.newest_keys(session, of, _rows.microseconds(at)))
+    return _read(session, of[0], [row for key in keys for row in _one(session, (*of, *key))], at)
 
 
 def samples_between(

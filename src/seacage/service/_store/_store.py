@@ -1,40 +1,69 @@
 """The live store: every sample once, on disk before it is acknowledged."""
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
-from contextlib import suppress
-from datetime import UTC, datetime, timedelta
+from contextlib import closing, contextmanager, suppress
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
 from seacage.records import Amendment, Limits, Sample
 from seacage.service._schemas._samples import AggregateOut
-from seacage.service._store import _adaptations, _samples
+from seacage.service._store import _adaptations, _damage, _samples
 from seacage.service._store._adaptations import Adaptation, Refold, keep_adaptations
 from seacage.service._store._aggregates import aggregates_between, check_aggregate
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
 from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
-from seacage.service._store._damage import Stretch, begin_damage, cut_begins, damage_of, keep_damage
+from seacage.service._store._damage import Stretch
+from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import CHECKED, Damage
-from seacage.service._store._database._open import database_at, look_into
 from seacage.service._store._database._rows import DAY_US, Bounds, check_seq, microseconds
 from seacage.service._store._database._session import AbstractSession, DamageError, StoreError
+from seacage.service._store._database._sqlite import SqliteDatabase, sqlite_look
 from seacage.service._store._days import retire_days
-from seacage.service._store._quality import newest_keys
 from seacage.service._store._samples import Append, Stored, reinstate_samples, withdraw_samples
 from seacage.service._store._write_queue import Writer
 from seacage.twin import AlarmEvent
 
-__all__ = ["Store", "StoreError", "look_into", "open_store"]
+__all__ = ["Store", "StoreError", "database_at", "look_into", "open_store"]
 P = ParamSpec("P")
 T = TypeVar("T")
 _PATIENCE_S = 5.0  # a server may take a moment to see that a process was killed
 _LOOK_S = 0.2
 _AHEAD = timedelta(seconds=60)  # so far a source's clock may be ahead
 _TABLES = (*CHECKED, "tally")
+
+
+def database_at(place: Path | str) -> _session.AbstractDatabase:
+    """Open a database to write in, made where there is none."""
+    if _is_server(place):
+        from seacage.service._store._database._postgres import PostgresDatabase
+
+        return PostgresDatabase(str(place))
+    return SqliteDatabase(Path(place))
+
+
+@contextmanager
+def look_into(place: Path | str) -> Generator[AbstractSession]:
+    """Read one moment of a store that a service may be writing.
+
+    ``place``: as for ``open_store``, but there already.
+
+    Raises StoreError: it cannot be read.
+    """
+    if _is_server(place):
+        with closing(database_at(place)) as database, database.reading() as session:
+            yield session
+    else:
+        with sqlite_look(Path(place)) as session:
+            yield session
+
+
+def _is_server(place: Path | str) -> bool:
+    return isinstance(place, str) and place.startswith(("postgresql://", "postgres://"))
 
 
 def open_store(place: Path | str, *, archive: Path | None = None) -> "Store":
@@ -226,12 +255,7 @@ class Store:
 
     def newest_of_each(self, cage: str, stream: str, *, at: datetime) -> list[Sample]:
         """Read the last samples of a stream until a time that carried each of its quantities."""
-
-        def newest(session: AbstractSession) -> list[Sample]:
-            keys = newest_keys(session, (cage, stream), microseconds(at))
-            return _samples.samples_at(session, cage, stream, keys, known_at=at)
-
-        return self._read("newest", newest)
+        return self._read("newest", _samples.newest_samples, (cage, stream), at)
 
     def amendments(
         self, cage: str, stream: str, *, start: datetime, known_at: datetime
@@ -262,33 +286,27 @@ class Store:
 
     def line_damage(self, cage: str) -> tuple[list[Stretch], list[tuple[str, datetime]]]:
         """Read what stretches of time did to lines, and from when on each line is counted."""
-        return self._read("damage", damage_of, cage)
+        return self._read("damage", _damage.damage_of, cage)
 
     def keep_damage(
         self, cage: str, span: tuple[datetime, datetime], rows: Sequence[Stretch]
     ) -> "Future[None]":
         """Keep what stretches of a span did to lines, in place of those that were there."""
-        return self._writer.ask(lambda session: keep_damage(session, cage, span, rows))
+        return self._writer.ask(lambda session: _damage.keep_damage(session, cage, span, rows))
 
     def begin_damage(
         self, cage: str, lines: Sequence[str], t: datetime, journal: Sequence[AlarmEvent]
     ) -> "Future[None]":
         """Count lines' damage from a time on; with the journal's lines, both or neither."""
         return self._writer.ask(
-            lambda session: begin_damage(session, cage, lines, t, journal), vital=True
+            lambda session: _damage.begin_damage(session, cage, lines, t, journal), vital=True
         )
 
     def rewind_damage(
         self, cage: str, hour: datetime, t: datetime, lines: Sequence[str]
     ) -> "Future[None]":
         """Forget stretches from an hour on; lines that began after a time begin then."""
-
-        def rewind(session: AbstractSession) -> None:
-            keep_damage(session, cage, (hour, datetime.max.replace(tzinfo=UTC)), ())
-            cut_begins(session, cage, t)
-            begin_damage(session, cage, lines, t, ())
-
-        return self._writer.ask(rewind)
+        return self._writer.ask(lambda session: _damage.rewind(session, cage, hour, t, lines))
 
     def is_retired(self, cage: str, stream: str, start: datetime, end: datetime) -> bool:
         """Whether samples of a span have left the store, and are in no archive."""

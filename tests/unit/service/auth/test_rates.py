@@ -1,6 +1,6 @@
 import pytest
 
-from seacage.service._auth._rates import Rates
+from seacage.service._auth._limits import Rates
 
 
 def test_a_bucket_lets_a_burst_pass_and_then_as_many_as_time_fills_in():
@@ -24,7 +24,7 @@ def test_one_asker_does_not_use_up_the_bucket_of_another():
 
 
 def test_those_who_called_longest_ago_are_forgotten(monkeypatch):
-    monkeypatch.setattr("seacage.service._auth._rates._MOST_ASKERS", 2)
+    monkeypatch.setattr("seacage.service._auth._limits._MOST_ASKERS", 2)
     rates = Rates(per_s=1e-6, burst=1.0)
     for asker in ("ada", "bob", "cy"):
         rates.wait_s(asker, 0.0)

@@ -5,12 +5,12 @@ import asyncio
 import pytest
 from fastapi import HTTPException
 
-from seacage.service._auth._reads import Reads
+from seacage.service._auth._connections import Reads
 
 
 @pytest.fixture(autouse=True)
 def _no_pause(monkeypatch):
-    monkeypatch.setattr("seacage.service._auth._reads._PAUSE_S", 0.0)
+    monkeypatch.setattr("seacage.service._auth._connections._PAUSE_S", 0.0)
 
 
 def take(reads, *amounts):

@@ -1,6 +1,6 @@
 from collections import Counter
 
-from seacage.service._ingest._shards import worker_of
+from seacage.service._assembly import worker_of
 
 CAGES = [f"cage-{number}" for number in range(400)]
 

@@ -3,8 +3,13 @@ from datetime import UTC, datetime, timedelta
 import pytest
 
 from running_service import NOON, HandClock
-from seacage.service._live._clock import FollowingClock, ReplayClock, WallClock, latest_allowed
-from seacage.service._live._clock_faults import ClockFaults
+from seacage.service._live._clock import (
+    ClockFaults,
+    FollowingClock,
+    ReplayClock,
+    WallClock,
+    latest_allowed,
+)
 
 
 @pytest.fixture

@@ -75,7 +75,6 @@ OBSERVATIONS = "Observations"
 # The properties of an Observation
 OBSERVED = ("@iot.id", "phenomenonTime", "resultTime", "result", "resultQuality")
 
-
 # The set that a relation of a set leads to; one named as the set leads to several entities
 RELATIONS: Mapping[str, Mapping[str, str]] = {
     "Things": {"Locations": "Locations", "Datastreams": "Datastreams"},

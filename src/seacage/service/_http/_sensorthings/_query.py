@@ -19,7 +19,6 @@ _ITEM = re.compile(r"([A-Za-z]+)((?:/[A-Za-z]+)*)(?:\((.*)\))?")
 _ORDER = re.compile(r"([A-Za-z@.]+)( asc| desc)?")
 _TERM = re.compile(r"(resultTime|phenomenonTime) (eq|ge|gt|le|lt) (\S+)")
 _TICK = timedelta(microseconds=1)
-
 # First time, included, and last, left out; open where None
 Span = tuple[datetime | None, datetime | None]
 

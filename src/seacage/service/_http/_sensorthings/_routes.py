@@ -1,12 +1,13 @@
 """What was measured, as OGC SensorThings: read only, and without what it does not do."""
 
+import json
 from collections.abc import Callable
 from datetime import datetime
 from typing import Annotated, Any
 from urllib.parse import quote, urlencode
 
 from fastapi import APIRouter, Depends, Path, Query, Request
-from pydantic import Field
+from pydantic import BaseModel, ConfigDict, Field
 
 from seacage.conventions import InputError
 from seacage.records import Sample
@@ -39,43 +40,7 @@ _CONFORMS = "http://www.opengis.net/spec/iot_sensing/1.1/req/"
 _KEPT = ("datamodel", *(f"request-data/{one}" for one in ("select", "expand", "top", "skip")))
 _PLAIN = ":/'()@"  # of a path: what it may hold as it is
 things = APIRouter(prefix=ROOT, tags=["SensorThings"], dependencies=may_read)
-Top = Annotated[int, Query(alias="$top", ge=1, le=MOST, description="At most so many.")]
-Skip = Annotated[int, Query(alias="$skip", ge=0, le=FARTHEST, description="Leave out the first.")]
-Count = Annotated[bool, Query(alias="$count", description="Say how many there are in all.")]
-Select = Annotated[
-    str | None,
-    Query(alias="$select", max_length=300, description="Only these.", examples=["name,id"]),
-]
-Expand = Annotated[
-    str | None,
-    Query(
-        alias="$expand",
-        max_length=500,
-        description="Tell relations in full, each with options of its own in brackets.",
-        examples=["Datastreams($expand=Observations($top=1;$orderby=phenomenonTime desc))"],
-    ),
-]
-Order = Annotated[
-    str | None,
-    Query(
-        alias="$orderby",
-        max_length=60,
-        description="One property, asc or desc; of Observations their time.",
-        examples=["name desc"],
-    ),
-]
-Filter = Annotated[
-    str | None,
-    Query(
-        alias="$filter",
-        max_length=300,
-        description="Of Observations alone: by phenomenonTime or resultTime, terms joined by and.",
-        examples=["resultTime ge 2018-01-26T00:00:00Z and resultTime lt 2018-01-27T00:00:00Z"],
-    ),
-]
 Id = Annotated[str, Path(max_length=200, examples=["ace:buoy-1:current_speed_m_s"])]
-
-
 _ADDRESS = f"http://127.0.0.1:8000{ROOT}"
 _ENTITY: Entity = {
     "@iot.id": "ace",
@@ -107,34 +72,55 @@ class Root(AbstractAnswer):
     serverSettings: dict[str, Any]  # noqa: N815 (the standard's word)
 
 
-def _all_options(
-    request: Request,
-    top: Top = 100,
-    skip: Skip = 0,
-    count: Count = False,  # noqa: FBT002
-    select: Select = None,
-    expand: Expand = None,
-    order: Order = None,
-    within: Filter = None,
-) -> QueryOptions:
-    texts = {"$top": str(top), "$skip": str(skip), "$count": str(count).lower()}
-    return _read_options(request, texts, select=select, expand=expand, orderby=order, filter=within)
+class _OptionsOfOne(BaseModel):
+    model_config = ConfigDict(alias_generator="${}".format)
+
+    select: str | None = Field(
+        None, max_length=300, description="Only these.", examples=["name,id"]
+    )
+    expand: str | None = Field(
+        None,
+        max_length=500,
+        description="Tell relations in full, each with options of its own in brackets.",
+        examples=["Datastreams($expand=Observations($top=1;$orderby=phenomenonTime desc))"],
+    )
 
 
-def _options_of_one(request: Request, select: Select = None, expand: Expand = None) -> QueryOptions:
-    return _read_options(request, {}, select=select, expand=expand)
+class _AllOptions(_OptionsOfOne):
+    top: int = Field(100, ge=1, le=MOST, description="At most so many.")
+    skip: int = Field(0, ge=0, le=FARTHEST, description="Leave out the first.")
+    count: bool = Field(default=False, description="Say how many there are in all.")
+    orderby: str | None = Field(
+        None,
+        max_length=60,
+        description="One property, asc or desc; of Observations their time.",
+        examples=["name desc"],
+    )
+    filter: str | None = Field(
+        None,
+        max_length=300,
+        description="Of Observations alone: by phenomenonTime or resultTime, terms joined by and.",
+        examples=["resultTime ge 2018-01-26T00:00:00Z and resultTime lt 2018-01-27T00:00:00Z"],
+    )
 
 
-def _read_options(request: Request, texts: dict[str, str], **others: str | None) -> QueryOptions:
-    texts |= {f"${name}": text for name, text in others.items() if text is not None}
+def _read_all(request: Request, given: Annotated[_AllOptions, Query()]) -> QueryOptions:
+    return _read_of_one(request, given)
+
+
+def _read_of_one(request: Request, given: Annotated[_OptionsOfOne, Query()]) -> QueryOptions:
+    texts = {
+        name: one if isinstance(one, str) else json.dumps(one)
+        for name, one in given.model_dump(by_alias=True, exclude_none=True).items()
+    }
     foreign = [name for name in request.query_params if name.startswith("$") and name not in texts]
     if foreign:
         raise InputError(f"{foreign[0]} is not offered here.")
     return read_query(texts)
 
 
-Listing = Annotated[QueryOptions, Depends(_all_options)]
-Telling = Annotated[QueryOptions, Depends(_options_of_one)]
+Listing = Annotated[QueryOptions, Depends(_read_all)]
+Telling = Annotated[QueryOptions, Depends(_read_of_one)]
 
 
 class _Answer:

@@ -10,7 +10,6 @@ from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import Damage, checksum
 from seacage.service._store._database._pool import Pool, close_on_error
 from seacage.service._store._database._rows import Row, microseconds, moment_of
-from seacage.service._store._database._schema import tables, upgrade
 
 if TYPE_CHECKING:
     from psycopg import Connection
@@ -54,12 +53,10 @@ _LOCK = "SELECT pg_advisory_xact_lock(hashtext('seacage:' || current_schema()))"
 # It lasts as long as the connection that writes, so who has lost the one can write no more.
 _CLAIM = """
 SELECT pg_try_advisory_lock(hashtextextended('seacage:' || current_schema() || ':' || ?, 0))"""
-
 # A process whose machine has died lets go of its cages within half a minute.
 _KEEPALIVE = (
     "SET tcp_keepalives_idle = 15; SET tcp_keepalives_interval = 5; SET tcp_keepalives_count = 3"
 )
-
 _DAMAGED = {"XX001", "XX002"}  # data or an index that is corrupted
 _AGAIN_S = 1.0  # between two attempts to reach a server that does not answer
 _PATIENCE_S = 5
@@ -194,12 +191,12 @@ class PostgresDatabase(_session.AbstractDatabase):
         with self._writer.transaction():
             self._writer.execute(_LOCK)
             there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
-            for statement in (*tables(_WORDS), _BRIN):
+            for statement in (*_session.tables(_WORDS), _BRIN):
                 # Even "if not exists" locks a table that is there, against all that write into it.
                 if statement.split()[5] not in there:  # CREATE TABLE IF NOT EXISTS name
                     self._writer.execute(statement.encode())
             checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
-            for statement in upgrade(_WORDS, there - checked):
+            for statement in _session.upgrade(_WORDS, there - checked):
                 self._writer.execute(statement.encode())
             return {name for (name,) in self._writer.execute(_PARTITIONS).fetchall()}
 

@@ -19,7 +19,6 @@ _ALL = 2**62
 SAMPLES = "SELECT stream, t, seq, readings, remarks, t_ingest, crc FROM sample WHERE cage = ?"
 # Cage, stream, t, seq, readings, remarks, t_ingest: as in the schema
 Row = tuple[str, str, int, int, str, str, int]
-
 SampleRow = tuple[Any, ...]  # stream, t, seq, readings, remarks and t_ingest
 # The flag that a value got from its own check, and when the sample came that amended it [us]
 Own = tuple[int, int]

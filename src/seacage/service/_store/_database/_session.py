@@ -1,15 +1,19 @@
-"""What the store's statements need of a database, whichever it is."""
+"""What the store's statements need of a database, whichever it is, and its tables."""
 
+import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from seacage.conventions import SeacageError
-from seacage.service._store._database._checksum import UNVERIFIED, Damage, checksum
-from seacage.service._store._database._rows import Row
+from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Damage, checksum
+from seacage.service._store._database._rows import DAY_US, Row
 
+_FIRST = "INSERT INTO tally SELECT cage, '{kind}', {stream}, {day}, count(*) FROM {kind} GROUP BY "
+_KINDS = ("sample", "aggregate", "journal")
 Answer = list[tuple[Any, ...]]
 
 
@@ -130,3 +134,27 @@ class AbstractDatabase(ABC):
     @abstractmethod
     def close(self) -> None:
         """Close every connection."""
+
+
+def tables(words: Mapping[str, str]) -> list[str]:
+    """Statements that make the tables where there are none, in a database's words."""
+    text = files("seacage.service._store._database").joinpath("schema.sql").read_text("utf-8")
+    statements = re.sub("^--.*\n", "", text, flags=re.MULTILINE).format_map(words).split(";")
+    return [statement.strip() for statement in statements[:-1]]
+
+
+def upgrade(words: Mapping[str, str], without: Iterable[str]) -> list[str]:
+    """Statements that bring tables of 0.1.0 up to date.
+
+    ``words``: the database's. ``without``: tables that there are without a checksum, in any order.
+    """
+    old = CHECKED.keys() & set(without)
+    if not old:
+        return []
+    column = f"crc {words['integer']} DEFAULT {UNVERIFIED}"
+    day = f"t - ((t % {DAY_US}) + {DAY_US}) % {DAY_US}"
+    return [f"ALTER TABLE {name} ADD COLUMN {column}" for name in sorted(old)] + [
+        _FIRST.format(kind=kind, day=day, stream="''" if kind == "journal" else "stream")
+        + f"1, 3, {day}"
+        for kind in _KINDS
+    ]

@@ -16,7 +16,6 @@ from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Dama
 from seacage.service._store._database._pool import Pool, close_on_error
 from seacage.service._store._database._reserve import Reserve
 from seacage.service._store._database._rows import Row
-from seacage.service._store._database._schema import tables, upgrade
 
 _WORDS = {
     "integer": "INTEGER",
@@ -240,7 +239,7 @@ def _complete(connection: sqlite3.Connection) -> None:
     for name in _without_checksum(connection):
         view = f"SELECT *, {UNVERIFIED} AS crc FROM main.{name}"  # noqa: S608
         connection.execute(f"CREATE TEMP VIEW {name} AS {view}")
-    for table in tables(_WORDS):
+    for table in _session.tables(_WORDS):
         if table.startswith("CREATE TABLE") and table.split()[5] not in there:
             connection.execute(table.replace("CREATE", "CREATE TEMP", 1))
 
@@ -307,9 +306,9 @@ def _look_through(connection: sqlite3.Connection) -> None:
 
 def _make_tables(connection: sqlite3.Connection) -> None:
     """Make the tables, or bring those of version 1 up to date, and seal their description."""
-    for table in tables(_WORDS):
+    for table in _session.tables(_WORDS):
         connection.execute(table)
-    for statement in upgrade(_WORDS, _without_checksum(connection)):
+    for statement in _session.upgrade(_WORDS, _without_checksum(connection)):
         connection.execute(statement)
     connection.execute(f"PRAGMA user_version = {_VERSION}")
     connection.execute(f"PRAGMA application_id = {_seal(connection)}")

@@ -1,14 +1,18 @@
-"""Every row of a store read again, some at a time: damage is found before anybody asks."""
+"""Every row of a store read again, some at a time: damage is found before anybody asks.
+
+How many rows there are of each day is counted, so that it is noticed when some are missing.
+"""
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import TypeVar
 
 from seacage.service._store._database._checksum import CHECKED, UNVERIFIED
+from seacage.service._store._database._rows import DAY_US
 from seacage.service._store._database._session import AbstractSession, Answer, DamageError
-from seacage.service._store._integrity._tally import missing
 
 AT_ONCE = 500
 _DAYS_AT_ONCE = 20
@@ -16,6 +20,16 @@ _TALLY = "cage, kind, stream, t"
 T = TypeVar("T")
 # Does a transaction that reads; its name comes first
 Read = Callable[[str, Callable[[AbstractSession], T]], T]
+# Cage, stream and where a UTC day begins [us]; lines of the journal have the stream ''
+Day = tuple[str, str, int]
+_ADD = """
+INSERT INTO tally VALUES (?, ?, ?, ?, ?)
+ON CONFLICT (cage, kind, stream, t) DO UPDATE SET n = tally.n + excluded.n"""
+_NOW = """
+INSERT INTO tally SELECT ?, ?, ?, ?, count(*) FROM {kind} WHERE {rows}
+ON CONFLICT (cage, kind, stream, t) DO UPDATE SET n = excluded.n"""
+_EMPTY = "DELETE FROM tally WHERE cage = ? AND kind = ? AND stream = ? AND t = ? AND n = 0"
+_COUNT = "SELECT count(*) FROM {kind} WHERE {rows}"
 
 
 def verify(read: Read[Answer], cages: Sequence[str] = ()) -> Iterator[tuple[int, int]]:
@@ -51,7 +65,7 @@ def _days(session: AbstractSession, *, cages: Sequence[str], after: Answer) -> A
     """Compare the rows of some days with how many there were."""
     days = _some(session, "tally", _TALLY, _DAYS_AT_ONCE, cages, [one[:4] for one in after])
     for cage, kind, stream, t, counted in days:
-        gone = missing(session, kind, (cage, stream, t), counted)
+        gone = _missing(session, kind, (cage, stream, t), counted)
         session.damage.note_missing((cage, kind, stream, t), gone)
     return days
 
@@ -88,3 +102,32 @@ def _ascends(keys: Sequence[tuple[object, ...]]) -> bool:
         return all(one < other for one, other in pairwise(keys))  # pyright: ignore[reportOperatorIssue]
     except TypeError:  # a time that has become a word
         return False
+
+
+def count_new(session: AbstractSession, rows: Iterable[tuple[str, str, int]]) -> None:
+    """Add new samples, each by its cage, stream and time [us]."""
+    days = Counter((cage, stream, t - t % DAY_US) for cage, stream, t in rows)
+    session.each(_ADD, [(one[0], "sample", *one[1:], n) for one, n in sorted(days.items())])
+
+
+def recount(session: AbstractSession, kind: str, rows: Iterable[tuple[str, str, int]]) -> None:
+    """Count the rows of days again, after some were replaced or deleted; as ``count_new``."""
+    for day in sorted({(cage, stream, t - t % DAY_US) for cage, stream, t in rows}):
+        where, values = _rows_of(kind, day)
+        of = (day[0], kind, *day[1:])
+        session.rows(_NOW.format(kind=kind, rows=where), (*of, *values))
+        session.rows(_EMPTY, of)
+
+
+def _missing(session: AbstractSession, kind: str, day: Day, counted: int) -> int:
+    """How many rows of a day are not there that were counted."""
+    rows, values = _rows_of(kind, day)
+    ((there,),) = session.rows(_COUNT.format(kind=kind, rows=rows), values)
+    return max(counted - there, 0)
+
+
+def _rows_of(kind: str, day: Day) -> tuple[str, tuple[object, ...]]:
+    cage, stream, t = day
+    if kind == "journal":
+        return "cage = ? AND t >= ? AND t < ?", (cage, t, t + DAY_US)
+    return "cage = ? AND stream = ? AND t >= ? AND t < ?", (cage, stream, t, t + DAY_US)
