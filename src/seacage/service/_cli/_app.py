@@ -6,8 +6,6 @@ from typing import Annotated
 import typer
 
 from seacage.service._cli import (
-    _archive,
-    _backup,
     _campaign,
     _config,
     _doctor,
@@ -19,11 +17,11 @@ from seacage.service._cli import (
     _settle,
     _simulate,
     _study,
-    _token,
     _train,
 )
 from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
+from seacage.service._cli._data import _archive, _backup, _token
 from seacage.service._cli._rov import _commands
 
 app = typer.Typer(
