@@ -54,42 +54,29 @@ def back_up(settings: Settings, to: Path, *, config: Path | None = None) -> Mani
     Raises InputError: there is no data folder or no twin, or the file would lie in the folder.
     Raises StoreError: the store or its archive cannot be copied.
     """
-    data, place, archive = settings.data, store_place(settings), settings.store.archive
-    for folder in (data, *(cage.twin for cage in settings.cages)):
+    for folder in (settings.data, *(cage.twin for cage in settings.cages)):
         if not folder.is_dir():
             raise InputError(
                 f"backup: {folder} is no folder. Give --data, and --twin or --config as to "
                 "`seacage serve`."
             )
-    if to.resolve().is_relative_to(data.resolve()):
-        raise InputError(f"backup: {to} would lie in {data} itself. Write it to another disk.")
+    if to.resolve().is_relative_to(settings.data.resolve()):
+        raise InputError(
+            f"backup: {to} would lie in {settings.data} itself. Write it to another disk."
+        )
     with TemporaryDirectory(dir=to.parent, prefix=f"{to.name}.") as folder:
-        part, samples = Path(folder) / "backup.tar", Path(folder) / _SAMPLES
+        part = Path(folder) / "backup.tar"
         with tarfile.open(part, "w") as tar:
-            backup = _Backup(tar)
-            # The service's places in its tables before the samples, and the archive after them:
-            # what moves in the meantime is then in the backup twice, and not lost.
-            replayed = store_place(settings, replayed=True)
-            backup.add_folder(data, ".", without=[archive, place, replayed])
-            if isinstance(place, Path) and place.exists():
-                copy_database(place, samples)
-                backup.add(samples, _SAMPLES)
-            if archive is not None:
-                for path in Archive(archive).files():
-                    backup.add(path, f"{_ARCHIVE}/{path.relative_to(archive).as_posix()}")
-            twins = {str(one.twin): f"{_TWINS}/{one.name or 'twin'}" for one in settings.cages}
-            for twin, name in twins.items():
-                backup.add_folder(Path(twin), name)
+            backup, place = _Backup(tar), store_place(settings)
+            _add_service(backup, settings, place, copied=Path(folder) / _SAMPLES)
             if config is not None:
                 backup.add(config, SETTINGS)
-            stored = {place: _SAMPLES} if isinstance(place, Path) else {}
-            stored |= {archive: _ARCHIVE} if archive else {}
             manifest = Manifest(
                 version=version("seacage"),
                 physics=PHYSICS,
                 made=datetime.now(UTC).isoformat(timespec="seconds"),
                 database=None if isinstance(place, Path) else without_password(place),
-                places={str(one): to for one, to in {data: ".", **stored, **twins}.items()},
+                places=_places(settings, place),
                 files=dict(backup.files),
             )
             backup.add_content(MANIFEST_TYPE.dump_json(manifest, indent=1), MANIFEST)
@@ -98,6 +85,38 @@ def back_up(settings: Settings, to: Path, *, config: Path | None = None) -> Mani
             os.fsync(written.fileno())
         part.replace(to)
     return manifest
+
+
+def _places(settings: Settings, place: Path | str) -> dict[str, str]:
+    """Where each folder or file of the settings lies in a restored data folder."""
+    places = {str(settings.data): "."}
+    if isinstance(place, Path):
+        places[str(place)] = _SAMPLES
+    if settings.store.archive is not None:
+        places[str(settings.store.archive)] = _ARCHIVE
+    return places | {str(one.twin): f"{_TWINS}/{one.name or 'twin'}" for one in settings.cages}
+
+
+def _add_service(backup: "_Backup", settings: Settings, place: Path | str, *, copied: Path) -> None:
+    """Add everything that a service keeps, in an order in which nothing is lost.
+
+    Rows of a table are stored before the service notes its place in the table, and days are
+    archived before they leave the store. So the notes come first, then the samples, then the
+    archive: what moves in the meantime is in the backup twice.
+
+    ``place``: of the store. ``copied``: where a file of samples is copied to.
+    """
+    archive, replayed = settings.store.archive, store_place(settings, replayed=True)
+    backup.add_folder(settings.data, ".", without=[archive, place, replayed])
+    if isinstance(place, Path) and place.exists():
+        copy_database(place, copied)
+        backup.add(copied, _SAMPLES)
+    if archive is not None:
+        for path in Archive(archive).files():
+            backup.add(path, f"{_ARCHIVE}/{path.relative_to(archive).as_posix()}")
+    for twin, name in _places(settings, place).items():
+        if name.startswith(f"{_TWINS}/"):
+            backup.add_folder(Path(twin), name)
 
 
 class _Backup:

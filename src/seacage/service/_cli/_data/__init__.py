@@ -1,0 +1,1 @@
+"""Commands about what a service keeps: its samples, its tokens, and a backup of all."""
