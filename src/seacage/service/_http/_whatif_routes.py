@@ -26,7 +26,7 @@ async def get_training_domain(live: Live) -> Learned:
 
 
 @what_if.post(
-    "/{cage}/whatif", dependencies=may_read, response_class=Response, responses={**WRITE, **FRAME}
+    "/{cage}/whatif", dependencies=may_read, response_class=Response, responses=WRITE | FRAME
 )
 def ask_what_if(live: Live, body: WhatIf) -> Response:
     """Answer to water that is only imagined, as a frame with the flag 8; nothing is kept.
