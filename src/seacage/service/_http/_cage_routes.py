@@ -156,9 +156,7 @@ def get_shape(live: Live, at: At = None) -> Shape:
     return shape_of(live.snapshot_at(at).answered)
 
 
-@cages.get(
-    "/{cage}/frame", dependencies=may_read, response_class=Response, responses={**READ, **FRAME}
-)
+@cages.get("/{cage}/frame", dependencies=may_read, response_class=Response, responses=READ | FRAME)
 def get_frame(live: Live, at: At = None) -> Response:
     """Give the page's binary message of now or of the past; ``docs/service.md`` has its layout."""
     return Response(live.snapshot_at(at).frame, media_type=MEDIA_TYPE)

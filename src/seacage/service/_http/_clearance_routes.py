@@ -31,6 +31,7 @@ Stale = Annotated[
     bool, Query(description="Take the last sound reading however old it is.", examples=[False])
 ]
 _STALE = refusal(409, "The net is not known, or not now.", "The net is not known now.")
+_QUERY = WRITE | _STALE
 _LINE = {"type": "LineString", "coordinates": [[8.63, 63.61], [8.64, 63.61]]}
 _MAP = {
     "type": "FeatureCollection",
@@ -41,7 +42,7 @@ _MCAP = _NO_MCAP | body_of(MCAP, "The file.", schema=BINARY)
 _GEOJSON = body_of(GEOJSON, "The file.", schema={"type": "object"}, example=_MAP)
 
 
-@rov.post("/{cage}/clearance", responses=WRITE | _STALE)
+@rov.post("/{cage}/clearance", responses=_QUERY)
 def ask_clearance(
     live: Live, body: schemas.ClearanceQuery, at: At = None
 ) -> schemas.ClearanceAnswer:
@@ -55,7 +56,7 @@ def ask_clearance(
     return clearance_answer(_net_for(live, body, at), body)
 
 
-@rov.post("/{cage}/inspection", responses=WRITE | _STALE)
+@rov.post("/{cage}/inspection", responses=_QUERY)
 def ask_inspection(
     live: Live, body: schemas.InspectionQuery, at: At = None
 ) -> schemas.InspectionAnswer:
@@ -63,15 +64,13 @@ def ask_inspection(
     return inspection_answer(_net_for(live, body, at), body)
 
 
-@rov.post("/{cage}/inspection.mcap", response_class=Response, responses=WRITE | _STALE | _MCAP)
+@rov.post("/{cage}/inspection.mcap", response_class=Response, responses=_QUERY | _MCAP)
 def ask_inspection_mcap(live: Live, body: schemas.InspectionQuery, at: At = None) -> Response:
     """Give the same way as a nav_msgs/Path in an MCAP file, with the net it follows."""
     return Response(inspection_mcap(_net_for(live, body, at), body), media_type=MCAP)
 
 
-@rov.post(
-    "/{cage}/inspection.geojson", response_class=Response, responses=WRITE | _STALE | _GEOJSON
-)
+@rov.post("/{cage}/inspection.geojson", response_class=Response, responses=_QUERY | _GEOJSON)
 def ask_inspection_geojson(live: Live, body: schemas.InspectionQuery, at: At = None) -> Response:
     """Give the same way as lines by latitude and longitude."""
     return Response(inspection_geojson(_net_for(live, body, at), body), media_type=GEOJSON)

@@ -1,5 +1,6 @@
 """What the calls share: their cage, their bounds, and the refusals that each documents."""
 
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import Depends, HTTPException, Path, Query, Request
@@ -74,24 +75,18 @@ def _cage(request: Request, cage: Annotated[str, Path(max_length=64)]) -> LiveCa
 _NAME = r"^[A-Za-z0-9][A-Za-z0-9_.\-]*$"
 _WHEN = "2018-01-26T23:08:00Z"
 Live = Annotated[LiveCage, Depends(_cage)]
+_when = partial(Query, examples=[_WHEN])
 At = Annotated[
-    Reach | None,
-    Query(description="A time in the past, with its zone; now if left out.", examples=[_WHEN]),
+    Reach | None, _when(description="A time in the past, with its zone; now if left out.")
 ]
-From = Annotated[
-    Reach | None, Query(alias="from", description="First time, included.", examples=[_WHEN])
-]
-To = Annotated[
-    Reach | None, Query(alias="to", description="Last time, left out.", examples=[_WHEN])
-]
+From = Annotated[Reach | None, _when(alias="from", description="First time, included.")]
+To = Annotated[Reach | None, _when(alias="to", description="Last time, left out.")]
 MOST_ROWS = 10_000  # of an answer
 Limit = Annotated[int, Query(ge=1, le=MOST_ROWS, description="At most so many.", examples=[1000])]
-Stream = Annotated[
-    str | None,
-    Query(max_length=64, pattern=_NAME, description="All if left out.", examples=["buoy-1"]),
-]
-OneStream = Annotated[str, Query(max_length=64, pattern=_NAME, examples=["buoy-1"])]
-Key = Annotated[str, Query(max_length=64, pattern=_NAME, examples=["current_speed_m_s"])]
+_name = partial(Query, max_length=64, pattern=_NAME)
+Stream = Annotated[str | None, _name(description="All if left out.", examples=["buoy-1"])]
+OneStream = Annotated[str, _name(examples=["buoy-1"])]
+Key = Annotated[str, _name(examples=["current_speed_m_s"])]
 Width = Annotated[
     int,
     Query(description="Of each span [s].", examples=[600], json_schema_extra={"enum": [60, 600]}),

@@ -86,9 +86,7 @@ class _Span:
         if len(read) > self.limit:
             return self._means(read[0])
         good = [(one.t, value) for one in read if (value := usable_value(one)) is not None]
-        return Measured(
-            t=[t for t, _ in good], value=[round(value, _DECIMALS) for _, value in good]
-        )
+        return Measured(t=[t for t, _ in good], value=[round(v, _DECIMALS) for _, v in good])
 
     def telling_readings(self, first: Sample) -> list[Sample]:
         """Of each of the spans that tell most, a reading as usual as its mean."""
@@ -117,9 +115,7 @@ class _Span:
         store, cage, end = self.store, self.cage, self.end
         (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
         length_s = (last.t - first.t).total_seconds()
-        width_s = next(
-            (width for width in WIDTHS_S if length_s <= width * self.limit), WIDTHS_S[-1]
-        )
+        width_s = next((one for one in WIDTHS_S if length_s <= one * self.limit), WIDTHS_S[-1])
         width = timedelta(seconds=width_s)
         since, found = floor_time(first.t, width), list[AggregateOut]()
         read = partial(store.aggregates, cage, stream=first.stream, key=key, width_s=width_s)

@@ -26,7 +26,7 @@ async def get_training_domain(live: Live) -> Learned:
 
 
 @what_if.post(
-    "/{cage}/whatif", dependencies=may_read, response_class=Response, responses={**WRITE, **FRAME}
+    "/{cage}/whatif", dependencies=may_read, response_class=Response, responses=WRITE | FRAME
 )
 def ask_what_if(live: Live, body: WhatIf) -> Response:
     """Answer to water that is only imagined, as a frame with the flag 8; nothing is kept.
@@ -42,10 +42,8 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
         tp=body.tp_s,
         wave_from=body.wave_from_deg,
     )
-    water, twin = Metocean.of(sea), live.twin
-    answered = Answered(
-        t=live.clock.now(), answer=twin.predict(water), metocean=water, input_age_s=0.0
-    )
+    water, twin, now = Metocean.of(sea), live.twin, live.clock.now()
+    answered = Answered(t=now, answer=twin.predict(water), metocean=water, input_age_s=0.0)
     state = state_of(live.name, twin, answered, twin.start())
     if state.water:
         state = state.model_copy(update={"water": effective_water(state.water, sea, twin)})

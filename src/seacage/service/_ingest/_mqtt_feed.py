@@ -253,11 +253,9 @@ class MqttFeed:
             by_stream.setdefault(one.stream, []).extend(one.outcomes)
         for stream, settled in by_stream.items():
             topic = self._topics.acknowledgements(name, stream)
-            for first in range(0, len(settled), _BATCH):
+            for k in range(0, len(settled), _BATCH):
                 # A lost one has the sender send again; more is not needed.
-                self._link.publish(
-                    topic, acknowledgement_text(settled[first : first + _BATCH]), qos=0
-                )
+                self._link.publish(topic, acknowledgement_text(settled[k : k + _BATCH]), qos=0)
 
     async def _store_samples(self, cage: LiveCage, samples: Sequence[Sample]) -> tuple[bool, ...]:
         logged = False

@@ -164,12 +164,9 @@ def what_if_parted(name: str, twin: Twin, answered: Answered) -> schemas.WhatIfP
         found = twin.if_parted(water)
         reason = found.reason[0]
         lines = _lines_if_parted(found) if np.isfinite(found.mean[0]).any() else []
+    lines.sort(key=_badness, reverse=True)
     return schemas.WhatIfParted(
-        cage=name,
-        time=answered.t,
-        level=1,
-        reason=reason or None,
-        lines=sorted(lines, key=_badness, reverse=True),
+        cage=name, time=answered.t, level=1, reason=reason or None, lines=lines
     )
 
 
@@ -194,12 +191,10 @@ def _lines_if_parted(found: IfParted) -> list[schemas.PartedLine]:
     ]
 
 
-def _load_on(
-    found: IfParted, load: Float[np.ndarray, " line"], line: int
-) -> schemas.LineLoad | None:
-    if (kn := _number(load[line] / 1e3)) is None:
+def _load_on(found: IfParted, load: Float[np.ndarray, " line"], k: int) -> schemas.LineLoad | None:
+    if (kn := _number(load[k] / 1e3)) is None:
         return None
-    return schemas.LineLoad(line=found.line_names[line], kn=kn)
+    return schemas.LineLoad(line=found.line_names[k], kn=kn)
 
 
 def _badness(line: schemas.PartedLine) -> tuple[bool, float, float]:

@@ -175,8 +175,7 @@ class LiveCage:
             self._publish(await asyncio.to_thread(self.live.begin))
 
     async def run(self) -> None:
-        """Step the twin for ever, through samples at once: an answer is as old as its step."""
-        step = self._metrics.steps.labels(self.name).time()(self.live.step)
+        """Step the twin for ever."""
         while True:
             # Not wait_for, which may swallow a cancellation that meets an arrival (Python 3.11).
             with suppress(TimeoutError):
@@ -185,8 +184,9 @@ class LiveCage:
             ticked = not self._arrived.is_set()
             self._arrived.clear()
             async with self._stepping:
-                pending = self._take_pending()
-                answered, events = await asyncio.to_thread(step, pending, ticked=ticked)
+                answered, events = await asyncio.to_thread(
+                    self._step, self._take_pending(), ticked=ticked
+                )
                 self._note(events)
                 self._publish(answered)
             await asyncio.sleep(_GATHERED_S)
@@ -264,6 +264,13 @@ class LiveCage:
         self._waiting = 0
         self._room.set()
         return arrived
+
+    def _step(
+        self, arrived: Sequence[Stored], *, ticked: bool
+    ) -> tuple[Answered, tuple[Event, ...]]:
+        """Step through samples at once, and tick: the answer is as old as this call."""
+        with self._metrics.steps.labels(self.name).time():
+            return self.live.step(arrived, ticked=ticked)
 
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:

@@ -114,13 +114,9 @@ class DamageCounter:
         if line not in (before := self.at(now)):
             counted = ", ".join(self.lines) or "none: the twin has no loads in waves"
             raise InputError(f"No damage of a line {line!r} is counted. There are {counted}.")
+        share = before[line].damage
         event = AlarmEvent(
-            alarm=f"damage.{line}",
-            action=Action.RESET,
-            t=now,
-            value=before[line].damage,
-            who=who,
-            why=why,
+            alarm=f"damage.{line}", action=Action.RESET, t=now, value=share, who=who, why=why
         )
         self._running = None
         return self._begin((line,), floor_time(now, _MINUTE), (event,))
@@ -161,13 +157,9 @@ class DamageCounter:
         if start >= end:
             return []
         stale = timedelta(seconds=self._twin.timeouts.stale_after_s)
+        cage, buoy = self._name, self._twin.buoy
         samples = self._store.samples(
-            self._name,
-            stream=self._twin.buoy,
-            start=start - stale,
-            end=end,
-            limit=_MOST,
-            withdrawn=False,
+            cage, stream=buoy, start=start - stale, end=end, limit=_MOST, withdrawn=False
         )
         if len(self._known) > _SEAS:
             self._known.clear()

@@ -55,16 +55,8 @@ def frame_of(
     moved_by, moved = _in_units(displacement, np.dtype("<i2"))
     spread_by, spread = _in_units(sigma, np.dtype("u1"))
     words = state.model_dump_json().encode()
-    header = _HEADER.pack(
-        _MAGIC,
-        _VERSION,
-        about,
-        state.t.timestamp() * 1e3,
-        len(displacement),
-        len(words),
-        moved_by,
-        spread_by,
-    )
+    t_ms, nodes = state.t.timestamp() * 1e3, len(displacement)
+    header = _HEADER.pack(_MAGIC, _VERSION, about, t_ms, nodes, len(words), moved_by, spread_by)
     return b"".join((header, _pad(moved), _pad(spread), words))
 
 

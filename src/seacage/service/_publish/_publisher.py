@@ -159,16 +159,14 @@ class Publisher:
     @contextmanager
     def _reading(self, source: Iterable[Batch]) -> Generator[threading.Thread]:
         # A daemon, for a source may wait for ever for a line that does not come.
-        reader = threading.Thread(
-            target=self._fill_spool, args=(source,), daemon=True, name="source"
-        )
+        reader = threading.Thread(target=self._fill, args=(source,), daemon=True, name="source")
         reader.start()
         try:
             yield reader
         finally:
             self._stopped.set()
 
-    def _fill_spool(self, source: Iterable[Batch]) -> None:
+    def _fill(self, source: Iterable[Batch]) -> None:
         try:
             for batch in source:
                 while not self._spool.put(batch.samples, source=batch.source, place=batch.place):

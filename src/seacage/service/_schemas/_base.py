@@ -25,19 +25,15 @@ def _with_zone(t: datetime) -> datetime:
 
 
 def _of_our_time(t: datetime) -> datetime:
-    if t.year not in _YEARS:  # at the ends of the calendar, another zone's time does not exist
+    if (
+        _with_zone(t).year not in _YEARS
+    ):  # at the ends of the calendar, another zone's time does not exist
         raise ValueError(f"no time here is from the year {t.year}; check the source's clock")
     return t
 
 
 # With its zone
-Time = Annotated[
-    datetime,
-    BeforeValidator(_require_text),
-    AfterValidator(_with_zone),
-    AfterValidator(_of_our_time),
-]
-
+Time = Annotated[datetime, BeforeValidator(_require_text), AfterValidator(_of_our_time)]
 _FIRST, _LAST = datetime(1900, 1, 1, tzinfo=UTC), datetime(2200, 1, 1, tzinfo=UTC)
 
 

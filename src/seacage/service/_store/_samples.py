@@ -267,15 +267,12 @@ def latest_samples(
 
 
 def _read(
-    session: AbstractSession,
-    cage: str,
-    rows: Iterable[_rows.SampleRow],
-    known_at: datetime | None = None,
+    session: AbstractSession, cage: str, rows: Iterable[_rows.SampleRow], at: datetime | None = None
 ) -> list[Sample]:
     found = list[Sample]()
     for row in rows:
         try:
-            found.append(_rows.sample_of_row(row, at=known_at and _rows.microseconds(known_at)))
+            found.append(_rows.sample_of_row(row, at=at and _rows.microseconds(at)))
         except (ValueError, TypeError, OverflowError, AttributeError, SeacageError):
             session.damage.note("sample", (cage, *row))
     return found

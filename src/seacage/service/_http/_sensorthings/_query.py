@@ -67,13 +67,10 @@ def read_query(texts: Mapping[str, str], *, depth: int = 0) -> QueryOptions:
 
 def filter_text(span: Span) -> str:
     """Write a span of time as ``$filter`` has it."""
-    ends = (("ge", span[0]), ("lt", span[1]))
-    return " and ".join(f"phenomenonTime {how} {time_text(t)}" for how, t in ends if t is not None)
-
-
-def time_text(t: datetime) -> str:
-    """Write a time."""
-    return t.isoformat().replace("+00:00", "Z")
+    ends = [
+        (how, t.isoformat()) for how, t in zip(("ge", "lt"), span, strict=True) if t is not None
+    ]
+    return " and ".join(f"phenomenonTime {how} {t.replace('+00:00', 'Z')}" for how, t in ends)
 
 
 def from_or_until(span: Span, t: datetime, *, newest: bool) -> Span:

@@ -128,20 +128,15 @@ def own_flags(readings: str) -> dict[str, Flag]:
 
 def amendments_of_row(row: SampleRow, *, until: int) -> Iterator[Amendment]:
     """What samples until a time [us] have made worse of a stored one."""
-    stream, t, _, readings, remarks, *_ = row
-    pairs: dict[str, list[Any]] = json.loads(readings)
+    stream, t_us, _, readings, remarks, *_ = row
+    pairs, t = json.loads(readings), moment_of(t_us)
     later = [(key, flag, *own) for key, (_, flag, *own) in pairs.items() if own]
     # The remarks of amendments are the last, one for each value.
     why: list[str] = json.loads(remarks)[-len(later) :] if later else []
     for (key, flag, was, by), remark in zip(later, why, strict=True):
         if by <= until:
             yield Amendment(
-                stream=stream,
-                t=moment_of(t),
-                key=key,
-                flag=Flag(flag),
-                was=Flag(was),
-                remark=remark,
+                stream=stream, t=t, key=key, flag=Flag(flag), was=Flag(was), remark=remark
             )
 
 
