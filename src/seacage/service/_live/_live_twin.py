@@ -13,7 +13,7 @@ from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._samples import Stored
-from seacage.twin import ADAPTATION_BLOCK, Answered, Event, TwinState, block_begin
+from seacage.twin import ADAPTATION_BLOCK, Answered, Event, Twin, TwinState, block_begin
 
 _RESTED = timedelta(seconds=30)  # without late samples, before the intervals are adapted anew
 _AT_ONCE = 6  # blocks of intervals adapted anew in one step
@@ -31,6 +31,7 @@ class LiveTwin:
     they came or on when the service was stopped and started.
     """
 
+    _twin: Twin
     state: TwinState  # what the twin remembers now
     answered: Answered  # the answer of its last step
 
@@ -42,7 +43,7 @@ class LiveTwin:
         desk: AlarmDesk,  # where its alarms are assessed
         tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
-        name, twin, store = past.cage, past.twin, past.store
+        name, store, twin = past.cage, past.store, past.twin
         self._name, self._twin, self._store, self._clock = name, twin, store, clock
         self._desk, self._past = desk, past
         self._period = timedelta(seconds=tick_s * clock.speed)
