@@ -37,7 +37,7 @@ from seacage.studies._demonstration_field import read_demonstration_field
 from seacage.twin import AlarmPolicy, Twin
 
 PICTURES = Path(__file__).parents[1] / "docs" / "pictures"
-CALM = datetime(2020, 1, 20, 3, 50, tzinfo=UTC)
+CALM = datetime(2020, 1, 20, 15, 0, tzinfo=UTC)
 PEAK = datetime(2020, 1, 21, 6, 20, tzinfo=UTC)
 # Below the usual 0.8, so that the hours shown here reach it.
 LIMITS = {"load": {"raise_at": 0.45, "clear_at": 0.4}}
