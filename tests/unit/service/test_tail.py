@@ -112,7 +112,7 @@ def test_a_bad_row_is_refused_with_its_line_and_the_others_are_not(logger):
         f"{logger.path}, line 5",
     ]
     assert "line 3: time = 'yesterday' is no time" in logger.refused[0][2]
-    assert "2 cells under a header of 3" in logger.refused[1][2]
+    assert "2 cells in a table of 3" in logger.refused[1][2]
 
 
 def test_a_header_that_nobody_knows_stops_the_tail_and_loses_no_row(logger):

@@ -32,6 +32,7 @@ class Layout(NamedTuple):
     delimiter: str = ","
     decimal: str = "."
     skip_lines: int = 0
+    header: bool = True
 
 
 PLAIN = Layout()  # of a table of which nothing else is known
@@ -66,7 +67,7 @@ def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
     text = read_text(path, layout.encoding)
     if path.suffix.lower() == ".json":
         return _coops_table(path, text)
-    return text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
+    return text_table(path, text, layout)
 
 
 def read_text(path: Path, encoding: str = "utf-8") -> str:
@@ -96,14 +97,17 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
     return text
 
 
-def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) -> Table:
-    """Split text into a table.
+def text_table(path: Path, text: str, layout: "ColumnMap | Layout") -> Table:
+    """Split text into a table, whose columns are numbered from 1 where it has no header.
 
     Raises RecordError: a row that cannot be split, or of another length than the header; no rows.
     """
-    rows, lines = _split(path, text, delimiter, skip_lines)
+    rows, lines = _split(path, text, layout.delimiter, layout.skip_lines)
     if not rows:
         raise RecordError(f"{path}: the file is empty. Give one with a header and rows.")
+    if not layout.header:
+        rows = [tuple(str(column) for column in range(1, len(rows[0]) + 1)), *rows]
+        lines = [lines[0], *lines]
     cut = bool(rows[1:]) and not text.endswith(("\n", "\r"))
     return make_table(path, rows, lines, cut=cut)
 
@@ -122,7 +126,7 @@ def make_table(
     for line, row in zip(lines, rows, strict=True):
         if len(row) != len(header):
             raise RecordError(
-                f"{path}, line {line}: {len(row)} cells under a header of {len(header)}. "
+                f"{path}, line {line}: {len(row)} cells in a table of {len(header)} columns. "
                 "Mend the row, or cut the file there; a shifted row is never guessed at."
             )
     if len(rows) == 1:
