@@ -143,17 +143,15 @@ def _layout(path: Path) -> tuple[Layout, str]:
     comma = delimiter != "," and any(re.fullmatch(r"\s*-?\d+,\d+\s*", cell) for cell in cells)
     skip = text.splitlines().index(lines[first]) if lines else 0
     decimal = "," if comma else "."
-    named = (
-        any(not _is_value(c, decimal) for c in _split(lines[first], delimiter)) if lines else True
-    )
+    named = not lines or _are_names(_split(lines[first], delimiter), decimal)
     return Layout(encoding, delimiter, decimal, skip, named), text
 
 
-def _is_value(cell: str, decimal: str) -> bool:
-    """Whether a cell holds a number, a time or nothing, and so no name."""
-    text = cell.strip().strip('"')
-    time = re.fullmatch(r"\d[\d./:,T+Z -]*( ?[AP]M)?", text) is not None
-    return time or number_in(text, decimal) is not None
+def _are_names(cells: Sequence[str], decimal: str) -> bool:
+    """Whether a table's first cells are a header: there is no date, and not numbers alone."""
+    texts = [cell.strip('" ') for cell in cells]
+    dated = any(re.match(_DATE, text) for text in texts)
+    return not dated and any(number_in(text, decimal) is None for text in texts)
 
 
 def _decode(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
@@ -187,11 +185,9 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
     except RecordError:
         fits = "No shipped map fits its columns."
     if not layout.header:
-        alike = [
-            name for name, one in shipped_maps().items() if one.names == frozenset(table.header)
-        ]
         fits = "It has no header, so its columns are named by number, from 1."
-        fits += f" The shipped map {alike[0]} has as many." if alike else ""
+        known = (name for name, one in shipped_maps().items() if one.names == {*table.header})
+        fits += "".join(f" The shipped map {name} has as many." for name in known)
     findings.append(fits)
     time_names, time_lines, time_findings = _time(table, layout)
     findings += time_findings
@@ -295,7 +291,7 @@ def _guess(table: Table, name: str, layout: Layout, seen: set[str]) -> _Guess:
     if known.size and known.min() < known.max() and not layout.header:
         quantity = "?"
     other = next((two for one, two in (_WAYS, _WAYS[::-1]) if quantity in one), ())
-    if quantity != "?" and seen & {quantity, *other}:
+    if quantity not in {"", "?"} and seen & {quantity, *other}:
         finding = f"{name!r} looks like {quantity} too, and one is read; it is under ignored."
         return _Guess(name, "", (), finding)
     if not quantity:
