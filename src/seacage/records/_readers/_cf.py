@@ -242,7 +242,7 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         notes.append(
             f"{column.quantity} is read from {column.name} [{column.unit}{sense}]{one.where}."
         )
-    notes += [note for column in columns if (note := column.declination_note)]
+    notes += [note for column in columns for note in column.declination_notes]
     north = "declination" in dataset.attrs or any(column.north for column in columns)
     if any(one.direction for one in series.values()) and not north:
         notes.append(
@@ -426,19 +426,19 @@ def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[_column_map.C
         if quantity in columns:
             raise RecordError(
                 f"{path}: {columns[quantity].name} and {name} are both {quantity}. Say which "
-                "under [columns] of a map (`seacage field import FILE MAP --inspect`)."
+                f"under [columns] of a map{_column_map.LEAD}."
             )
         unit = _UNITS.get(one.units, "")
         if not unit:
             raise RecordError(
                 f"{path}: {name} has the units {one.units!r}, so its {quantity} cannot be read. "
-                "Declare the variable, with its unit, under [columns] of a map."
+                f"Declare the variable, with its unit, under [columns] of a map{_column_map.LEAD}."
             )
         columns[quantity] = _column_map.Column(name=name, quantity=quantity, unit=unit, sense=sense)
     if not columns:
         raise RecordError(
             f"{path}: no variable has a standard name that is read, such as "
-            f"{', '.join(list(STANDARD_NAMES)[:2])}. Declare variables under [columns] of a map."
+            f"{next(iter(STANDARD_NAMES))}. Declare [columns] of a map{_column_map.LEAD}."
         )
     return tuple(columns.values())
 

@@ -30,6 +30,7 @@ class _Quantity:
     sense: str | None = None
 
 
+LEAD = " (`seacage field import FILE MAP --inspect` begins one)"  # to a map, in messages
 _SPEED = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1.0 / 3.6, "knot": 1852.0 / 3600.0}
 _LENGTH = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048}
 _PERIOD = {"s": 1.0}
@@ -92,7 +93,7 @@ class Column:
     missing: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        where = f"Column {self.name!r}"
+        where = f"[columns.{self.name}]"
         if self.quantity not in _QUANTITIES:
             raise RecordError(
                 f"{where}: the quantity {self.quantity!r} is unknown. "
@@ -137,11 +138,10 @@ class Column:
         return _QUANTITIES[self.quantity].key
 
     @property
-    def declination_note(self) -> str:
+    def declination_notes(self) -> list[str]:
         """What a record says of a direction that was turned to true north."""
-        if not self.declination_deg:
-            return ""
-        return f"{self.declination_deg:g} deg of declination are added to {self.name}."
+        added = f"{self.declination_deg or 0.0:g} deg of declination are added to {self.name}."
+        return [added] if self.declination_deg else []
 
     def convert(self, numbers: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """The file's numbers in the unit and the sense of the door key, NaN where missing.

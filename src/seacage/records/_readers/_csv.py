@@ -11,6 +11,7 @@ import numpy as np
 from seacage.conventions import Flag, Origin, RecordError
 from seacage.records._keys import KEYS
 from seacage.records._readers._column_map import (
+    LEAD,
     Column,
     ColumnMap,
     join_vectors,
@@ -24,7 +25,6 @@ from seacage.records._record import Record
 
 _YEARS = range(1900, 2200)
 _CONSTANT = 12  # equal values that make a column one that never changes
-LEAD = " (`seacage field import FILE MAP --inspect` begins one)"
 _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 
@@ -35,7 +35,7 @@ def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     for column in columns.read_columns:
         numbers, strange = _numbers(table, column, columns.decimal)
         values[column.key] = column.convert(numbers)
-        notes += [*strange, *([column.declination_note] if column.declination_note else [])]
+        notes += [*strange, *column.declination_notes]
     if columns.depth_m is not None:
         notes.append(f"{columns.title}: read at a depth of {columns.depth_m:g} m.")
     if columns.range_m is not None:
@@ -90,7 +90,7 @@ def read_rows(
     between = "\n" * max(layout.header, first_line - 1)  # blank lines are skipped, and counted
     above = header.rstrip("\r\n") if layout.header else ""
     table = text_table(path, above + between + rows, layout)
-    return record_in(table, columns or recognise(table), stream=stream)
+    return record_in(table, _map_of(table, columns), stream=stream)
 
 
 def _layout(columns: ColumnMap | None) -> Layout:

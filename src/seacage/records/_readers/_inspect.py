@@ -186,7 +186,7 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
         fits = "No shipped map fits its columns."
     if not layout.header:
         fits = "It has no header, so its columns are named by number, from 1."
-        known = (name for name, one in shipped_maps().items() if one.names == {*table.header})
+        known = (name for name, one in shipped_maps().items() if not one.names ^ {*table.header})
         fits += "".join(f" The shipped map {name} has as many." for name in known)
     findings.append(fits)
     time_names, time_lines, time_findings = _time(table, layout)
@@ -211,18 +211,17 @@ def _time(table: Table, layout: Layout) -> tuple[tuple[str, ...], list[str], lis
     names, cells, formats = best
     stated = parse_time(cells[0], formats[0]).tzinfo is not None
     zone = 'zone = "?"  # "UTC", "+01:00"; "Europe/Oslo" if its clock follows daylight saving'
-    stated_where = "not said"
+    spelled = "not said"
     if stated:
-        zone, stated_where = 'zone = "stated"  # each time says it', "stated in each"
+        zone, spelled = 'zone = "stated"  # each time says it', "stated in each"
     elif re.search(r"\b(utc|gmt)\b", " ".join(names).lower()):
-        zone, stated_where = 'zone = "UTC"  # for its name', "UTC, for its name"
+        zone, spelled = 'zone = "UTC"  # for its name', "UTC, for its name"
     form = f"format = {_quote(formats[0])}"
     spoken = " with ".join(repr(name) for name in names)
-    findings = [
-        f"{spoken} is the time, in the format {' or '.join(formats)}; its zone is {stated_where}."
-    ]
+    form_text = " or ".join(formats)
+    findings = [f"{spoken} is the time, in the format {form_text}; its zone is {spelled}."]
     if len(formats) > 1:
-        form = f'format = "?"  # {" or ".join(formats)}: the days do not tell'
+        form = f'format = "?"  # {form_text}: the days do not tell'
         findings.append("Suspicious: day and month cannot be told apart in it.")
     column = ", ".join(_key(name, layout) for name in names)
     lines = [f"column = {column if len(names) == 1 else f'[{column}]'}", form, zone]
@@ -392,8 +391,7 @@ def _toml(
     ]
     if layout.skip_lines:
         lines.append(f"skip_lines = {layout.skip_lines}")
-    if not layout.header:
-        lines.append("header = false")
+    lines += ["header = false"] * (not layout.header)
     lines += ["", "[time]", *time_lines]
     for one in guesses:
         if one.quantity:

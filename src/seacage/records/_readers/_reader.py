@@ -10,8 +10,8 @@ from seacage.conventions import Flag, RecordError, read_text
 from seacage.records._quality._check import check_record
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
-from seacage.records._readers._column_map import ColumnMap, shipped_maps
-from seacage.records._readers._csv import LEAD, record_in, split_table
+from seacage.records._readers._column_map import LEAD, ColumnMap, shipped_maps
+from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._record import Record
 
@@ -32,8 +32,8 @@ def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
     try:
         text = read_text(path, refusal=RecordError)
     except RecordError as error:
-        names = ", ".join(shipped_maps())
-        raise RecordError(f"{error} Give a map, or the name of a shipped one: {names}.") from error
+        known = f"Give a map{LEAD}, or the name of a shipped one: {', '.join(shipped_maps())}."
+        raise RecordError(f"{error} {known}") from error
     if _NETCDF.search(text):
         return NetcdfMap.from_toml(text, where=str(path))
     return ColumnMap.from_toml(text, where=str(path))

@@ -47,11 +47,11 @@ def test_a_map_is_read_from_toml(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ('unit = "cm/s"', "", r"map.toml: Column 'spd': its unit is missing.*m/s, cm/s"),
-        ('unit = "cm/s"', 'unit = "furlong"', r"Column 'spd': the unit 'furlong' is unknown"),
+        ('unit = "cm/s"', "", r"map.toml: \[columns.spd\]: its unit is missing.*m/s, cm/s"),
+        ('unit = "cm/s"', 'unit = "furlong"', r"\[columns.spd\]: the unit 'furlong' is unknown"),
         ('unit = "cm/s"', 'units = "cm/s"', r"the key 'units' is unknown. Did you mean 'unit'"),
         ('unit = "cm/s"', 'unit = "cm/s"\nsense = "from"', r"current_speed has no sense"),
-        ('sense = "from"', "", r"'dir': nothing says where its direction points"),
+        ('sense = "from"', "", r"columns.dir\]: nothing says where its direction points"),
         ('sense = "from"', 'sense = "to"', r'Declare sense as "towards" or "from"'),
         ('"current_speed"', '"speed"', r"the quantity 'speed' is unknown. Say one of current_s"),
         ('"current_speed"', '"hs"\nunit = "m"', r"map.toml: this is not TOML"),
