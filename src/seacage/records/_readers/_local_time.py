@@ -60,7 +60,7 @@ class _Rows(NamedTuple):
     @property
     def near(self) -> float:
         """How far a step may be from the usual one."""
-        return min(self.usual / 2, _HOUR / 4)
+        return min(1.5 * self.usual, _HOUR / 4)
 
     def nights(self) -> list[Int[np.ndarray, " part"]]:
         """The rows of each hour that there is twice."""
