@@ -249,5 +249,5 @@ def test_a_row_is_refused_where_their_syntax_test_fails_one(seed, tmp_path):
         assert len(read_record(tmp_path / "t.csv", columns=columns)) == 24
         return
     line = 2 + int(np.argmax(theirs == Flag.FAIL))
-    with pytest.raises(RecordError, match=f"line {line}: . cells under a header of 3"):
+    with pytest.raises(RecordError, match=f"line {line}: . cells in a table of 3"):
         read_record(tmp_path / "t.csv", columns=columns)

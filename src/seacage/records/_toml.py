@@ -61,6 +61,14 @@ def text_of(table: Table, name: str, *, where: str, default: str | None = None) 
     return value
 
 
+def truth_of(table: Table, name: str, *, where: str) -> bool:
+    """Whether something holds; it does where it is missing."""
+    value = table.get(name, True)
+    if not isinstance(value, bool):
+        raise RecordError(f"{where}: {name} = {value!r} is neither true nor false.")
+    return value
+
+
 def number_of(table: Table, name: str, *, where: str) -> float | None:
     """A number; None where it is missing."""
     return _number(table[name], name, where) if name in table else None
@@ -71,11 +79,17 @@ def numbers_of(table: Table, name: str, *, where: str) -> tuple[float, ...]:
     return tuple(_number(item, name, where) for item in _items(table, name, where))
 
 
-def texts_of(table: Table, name: str, *, where: str) -> tuple[str, ...]:
-    """A list of texts; empty where it is missing."""
-    items = _items(table, name, where)
-    if not all(isinstance(item, str) for item in items):
-        raise RecordError(f'{where}: {name} is no list of texts. Write {name} = ["…", "…"].')
+def names_of(
+    table: Table, name: str, *, where: str, default: tuple[str, ...] | None = None
+) -> tuple[str, ...]:
+    """Names or numbers of columns, in a list or one; refused where there is no default."""
+    value = table.get(name, default)
+    items = cast("list[object]", value if isinstance(value, list | tuple) else [value])
+    if not all(isinstance(item, str | int) and not isinstance(item, bool) for item in items):
+        raise RecordError(
+            f'{where}: {name} is missing or names no column. Write {name} = "…", or a list of '
+            "names; of numbers where header = false."
+        )
     return tuple(str(item) for item in items)
 
 

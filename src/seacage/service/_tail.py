@@ -134,10 +134,11 @@ class Tail:
         lines = [line + b"\n" for line in whole.split(b"\n")[:-1]]
         offset = self.place.offset + len(whole)
         after = TailPosition(offset=offset, line=first + len(lines), head=self._hash(file, offset))
-        above = max(0, self._skip_lines + 1 - first)  # lines up to the header's
-        if 0 < above <= len(lines):
-            self._header = self._text(lines[above - 1])
+        header = self._skip_lines - first  # where its line is, or without one the first row
+        if 0 <= header < len(lines):
+            self._header = self._text(lines[header])
             check_rows(self.path, self._header, columns=self.columns)
+        above = max(0, header + (self.columns is None or self.columns.header))
         samples = self._read(lines[above:], first + above + 1)
         self.place = after
         return samples

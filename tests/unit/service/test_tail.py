@@ -112,7 +112,7 @@ def test_a_bad_row_is_refused_with_its_line_and_the_others_are_not(logger):
         f"{logger.path}, line 5",
     ]
     assert "line 3: time = 'yesterday' is no time" in logger.refused[0][2]
-    assert "2 cells under a header of 3" in logger.refused[1][2]
+    assert "2 cells in a table of 3" in logger.refused[1][2]
 
 
 def test_a_header_that_nobody_knows_stops_the_tail_and_loses_no_row(logger):
@@ -254,3 +254,54 @@ def test_a_place_that_a_full_disk_cut_off_is_reported_and_the_file_read_anew(
         tail = feed(cage, logger, tmp_path)
     assert "place cannot be read" in logs[0]["event"]
     run_until(tail, lambda: minutes(cage.store.samples("ace", limit=100)) == [0, 1])
+
+
+HEADLESS = """
+title = "No header"
+origin = "measured"
+header = false
+skip_lines = {skip}
+ignored = [3]
+
+[time]
+column = 1
+format = "iso"
+zone = "Europe/Oslo"
+
+[columns.2]
+quantity = "current_speed"
+unit = "m/s"
+"""
+
+
+@pytest.mark.parametrize("skip", [0, 2])
+def test_rows_of_a_file_without_a_header_are_followed_from_the_first(logger, skip):
+    columns = ColumnMap.from_toml(HEADLESS.format(skip=skip))
+    logger.write("above\n" * skip + "2020-02-01T11:00,0.1,x\n")
+    tail = logger.tail(columns=columns)
+    assert minutes(tail.poll()) == [0]
+    logger.write("2020-02-01T11:10,0.2,x\n2020-02-01T11:20,0.3\n2020-02-01T11:30,0.4,x\n")
+    assert minutes(tail.poll()) == [10, 30]
+    assert [where for where, _, _ in logger.refused] == [f"{logger.path}, line {skip + 3}"]
+    after = logger.tail(columns=columns, place=tail.place)
+    logger.write("2020-02-01T11:40,0.5,x\n")
+    (last,) = after.poll()
+    assert last.t == datetime(2020, 2, 1, 10, 40, tzinfo=UTC)
+
+
+def test_a_file_without_a_header_that_does_not_fit_its_map_stops_the_tail(logger):
+    logger.write("2020-02-01T11:00,0.1\n")
+    tail = logger.tail(columns=ColumnMap.from_toml(HEADLESS.format(skip=0)))
+    with pytest.raises(RecordError, match="expects '3'"):
+        tail.poll()
+
+
+def test_rows_of_the_repeated_hour_are_followed_where_one_look_shows_the_step_back(logger):
+    tail = logger.tail(columns=ColumnMap.from_toml(HEADLESS.format(skip=0)))
+    rows = [f"2020-10-25T02:{minute:02}:00,0.1,x\n" for minute in range(0, 60, 10)]
+    logger.write("".join(rows))
+    assert tail.poll() == ()
+    assert len(logger.refused) == 6
+    assert "nothing tells summer time from standard time" in logger.refused[0][2]
+    logger.write("".join([*rows, *rows]))
+    assert [sample.t.hour for sample in tail.poll()] == [0] * 6 + [1] * 6

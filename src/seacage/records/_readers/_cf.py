@@ -10,6 +10,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Self
+from zoneinfo import ZoneInfo
 
 import numpy as np
 from jaxtyping import Float, Shaped
@@ -19,6 +20,7 @@ from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._netcdf_file import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers import _column_map
 from seacage.records._readers._csv import in_order
+from seacage.records._readers._local_time import parse_zone
 from seacage.records._record import Record
 from seacage.records._toml import check_filled, check_names, number_of, table_of, text_of
 
@@ -126,8 +128,13 @@ class NetcdfMap:
     columns: tuple[_column_map.Column, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.time_zone is not None:
-            _column_map.parse_zone(self.time_zone)
+        zone = self.time_zone or "UTC"
+        if isinstance(parse_zone(zone, where=self.title), ZoneInfo):
+            raise RecordError(
+                f"{self.title}: times of NetCDF count from a date, and whether the count follows "
+                f"the clocks of {zone} cannot be seen. Declare time_zone (--zone) as "
+                '"UTC" or an offset such as "+01:00".'
+            )
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
@@ -217,7 +224,7 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         for name, one in _series(path, dataset, variable, time_name, choice)
     }
     columns = choice.columns or _recognise(path, series)
-    _column_map.check_components((column.key for column in columns), where=str(path))
+    _column_map.check_components(columns, where=str(path))
     values: dict[str, np.ndarray] = {}
     notes: list[str] = []
     for column in columns:
@@ -235,11 +242,14 @@ def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream:
         notes.append(
             f"{column.quantity} is read from {column.name} [{column.unit}{sense}]{one.where}."
         )
-    if any(one.direction for one in series.values()) and "declination" not in dataset.attrs:
+    notes += [note for column in columns for note in column.declination_notes]
+    north = "declination" in dataset.attrs or any(column.north for column in columns)
+    if any(one.direction for one in series.values()) and not north:
         notes.append(
             "Nothing in the file says which north its compass means; it is taken for true."
         )
-    record = in_order(time, _column_map.vectors_joined(values), stream=stream, origin=choice.origin)
+    values = _column_map.join_vectors(values, columns)
+    record = in_order(time, values, stream=stream, origin=choice.origin)
     return replace(record, notes=(*notes, *record.notes))
 
 
@@ -284,7 +294,7 @@ def _start(path: Path, text: str, zone: str) -> datetime:
     except ValueError as error:
         raise RecordError(f"{path}: its times count since {text!r}, which is no date.") from error
     if start.tzinfo is None:
-        start = start.replace(tzinfo=_column_map.parse_zone(zone) or UTC)
+        start = start.replace(tzinfo=parse_zone(zone, where=str(path)) or UTC)
     return start.astimezone(UTC).replace(tzinfo=None)
 
 
@@ -416,19 +426,19 @@ def _recognise(path: Path, series: Mapping[str, _Series]) -> tuple[_column_map.C
         if quantity in columns:
             raise RecordError(
                 f"{path}: {columns[quantity].name} and {name} are both {quantity}. Say which "
-                "under [columns] of a map (`seacage field import FILE MAP --inspect`)."
+                f"under [columns] of a map{_column_map.LEAD}."
             )
         unit = _UNITS.get(one.units, "")
         if not unit:
             raise RecordError(
                 f"{path}: {name} has the units {one.units!r}, so its {quantity} cannot be read. "
-                "Declare the variable, with its unit, under [columns] of a map."
+                f"Declare the variable, with its unit, under [columns] of a map{_column_map.LEAD}."
             )
         columns[quantity] = _column_map.Column(name=name, quantity=quantity, unit=unit, sense=sense)
     if not columns:
         raise RecordError(
             f"{path}: no variable has a standard name that is read, such as "
-            f"{', '.join(list(STANDARD_NAMES)[:2])}. Declare variables under [columns] of a map."
+            f"{next(iter(STANDARD_NAMES))}. Declare [columns] of a map{_column_map.LEAD}."
         )
     return tuple(columns.values())
 

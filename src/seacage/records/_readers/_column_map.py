@@ -1,14 +1,16 @@
 """Column maps: what a foreign file's columns mean, declared and never guessed."""
 
+import math
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime, timedelta, timezone
+from datetime import UTC, datetime, tzinfo
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Self
+from typing import Any, Self
+from zoneinfo import ZoneInfo
 
 import numpy as np
 from jaxtyping import Float
@@ -16,6 +18,7 @@ from jaxtyping import Float
 from seacage.conventions import Origin, RecordError, parse_toml, read_text
 from seacage.records import _toml
 from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
+from seacage.records._readers._local_time import parse_zone
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,6 +30,7 @@ class _Quantity:
     sense: str | None = None
 
 
+LEAD = " (`seacage field import FILE MAP --inspect` begins one)"  # to a map, in messages
 _SPEED = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "km/h": 1.0 / 3.6, "knot": 1852.0 / 3600.0}
 _LENGTH = {"m": 1.0, "cm": 0.01, "mm": 0.001, "ft": 0.3048}
 _PERIOD = {"s": 1.0}
@@ -67,8 +71,13 @@ class Column:
         Of the file's numbers; there is no default.
     sense
         Of a direction: where it goes (``towards``) or comes from (``from``); no default.
-    depth_m
-        Where the file holds a profile: of this column [m].
+    north
+        Of a direction or a component: ``true``, as where it is left out, or ``magnetic``.
+    declination_deg
+        From true to magnetic north at the place and in the year, positive to the east: it is
+        added to the direction [deg]. Magnetic directions need it; NaN where only the user knows.
+    depth_m, range_m
+        Where the file holds a profile: of this column, or its distance from the instrument [m].
     missing
         Numbers that stand for no value, such as 99.0, in the file's unit.
     """
@@ -77,11 +86,14 @@ class Column:
     quantity: str
     unit: str = ""
     sense: str = ""
+    north: str = ""
+    declination_deg: float | None = None
     depth_m: float | None = None
+    range_m: float | None = None
     missing: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        where = f"Column {self.name!r}"
+        where = f"[columns.{self.name}]"
         if self.quantity not in _QUANTITIES:
             raise RecordError(
                 f"{where}: the quantity {self.quantity!r} is unknown. "
@@ -103,11 +115,33 @@ class Column:
                 f"{where}: nothing says where its direction points, and files differ. "
                 'Declare sense as "towards" or "from".'
             )
+        self._check_north(where)
+
+    def _check_north(self, where: str) -> None:
+        turn, turns = self.declination_deg, self.sense or self.key in _COMPONENTS
+        if self.north not in ({"", "true", "magnetic"} if turns else {""}):
+            raise RecordError(
+                f"{where}: north = {self.north!r} is unknown of {self.quantity}. Declare the "
+                'north of a direction, or of a component, as "true" or "magnetic".'
+            )
+        if (self.north == "magnetic") != (turn is not None) or abs(turn or 0.0) > 180.0:
+            raise RecordError(
+                f"{where}: north = {self.north!r} with declination_deg = {turn} does not tell the "
+                'direction from true north. With north = "magnetic" declare declination_deg at the '
+                "place and in the year, positive to the east (a chart or a geomagnetic model such "
+                "as WMM has it); else leave both out."
+            )
 
     @property
     def key(self) -> str:
         """The door key that the column becomes."""
         return _QUANTITIES[self.quantity].key
+
+    @property
+    def declination_notes(self) -> list[str]:
+        """What a record says of a direction that was turned to true north."""
+        added = f"{self.declination_deg or 0.0:g} deg of declination are added to {self.name}."
+        return [added] if self.declination_deg else []
 
     def convert(self, numbers: Float[np.ndarray, " t"]) -> Float[np.ndarray, " t"]:
         """The file's numbers in the unit and the sense of the door key, NaN where missing.
@@ -117,10 +151,11 @@ class Column:
         quantity = _QUANTITIES[self.quantity]
         known = np.where(np.isin(numbers, self.missing), np.nan, numbers)
         values = known * quantity.units[self.unit]
-        if quantity.sense is None or self.sense == quantity.sense:
+        turn = (self.declination_deg or 0.0) + (0.0 if self.sense == quantity.sense else 180.0)
+        if quantity.sense is None or turn == 0.0:
             return values
         sound = (values >= 0.0) & (values <= 360.0)
-        return np.where(sound, (values + 180.0) % 360.0, values)
+        return np.where(sound, (values + turn) % 360.0, values)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -144,22 +179,27 @@ class ColumnMap:
     time_format
         ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``.
     time_zone
-        Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, or ``stated``
-        to refuse such times. No default, and no named zones: their autumn has an hour twice.
+        Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, a named zone such
+        as ``Europe/Oslo``, or ``stated`` to refuse such times. ``?`` where only the user knows.
     columns
         Those that are read.
     ignored
         Those that are known and not read.
     delimiter
         Between cells: one character, or ``whitespace`` for any number of blanks.
-    depth_m
-        Which depth of a profile is read [m].
+    depth_m, range_m
+        Which depth of a profile, or distance from the instrument, is read [m].
     decimal
         Between a number's whole and its part: ``.`` or ``,``.
     encoding
         Of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``.
     skip_lines
         Lines before the header.
+    header
+        Whether there is one; else columns are named by number, from 1.
+    daylight_saving
+        Whether to refuse times of a fixed offset that step as daylight saving does; false
+        confirms that the clock kept the offset.
     """
 
     title: str
@@ -171,12 +211,20 @@ class ColumnMap:
     ignored: tuple[str, ...] = ()
     delimiter: str = ","
     depth_m: float | None = None
+    range_m: float | None = None
     decimal: str = "."
     encoding: str = "utf-8"
     skip_lines: int = 0
+    header: bool = True
+    daylight_saving: bool = True
 
     def __post_init__(self) -> None:
-        parse_zone(self.time_zone)
+        zone = None if self.time_zone == "?" else self.zone
+        if isinstance(zone, ZoneInfo) and not self.daylight_saving:
+            raise RecordError(
+                f"{self.title}: daylight_saving = false confirms a fixed offset, and "
+                f"{zone} has none. Declare the offset as zone, or leave it out."
+            )
         self._check_text()
         names = (*self.time_columns, *(column.name for column in self.columns), *self.ignored)
         for what in (names, (column.key for column in self.read_columns)):
@@ -188,9 +236,14 @@ class ColumnMap:
                 )
         if not self.read_columns:
             raise RecordError(
-                f"{self.title}: no column is read{self._depths()}. Map at least one quantity."
+                f"{self.title}: no column is read{self._places()}. Map at least one quantity."
             )
-        check_components((column.key for column in self.read_columns), where=self.title)
+        check_components(self.read_columns, where=self.title)
+        if not self.header and (named := [n for n in names if not re.fullmatch(r"[1-9]\d*", n)]):
+            raise RecordError(
+                f"{self.title}: {named[0]!r} is no number of a column. Where header = false, "
+                "columns are named by number, from 1."
+            )
 
     @classmethod
     def read(cls, path: Path | str) -> Self:
@@ -201,7 +254,7 @@ class ColumnMap:
         return cls.from_toml(read_text(path, refusal=RecordError), where=str(path))
 
     @classmethod
-    def from_toml(cls, text: str, *, where: str = "column map") -> Self:
+    def from_toml(cls, text: str, *, where: str = "column map", questions: bool = False) -> Self:
         """Read a map from TOML.
 
         It looks like this::
@@ -213,7 +266,7 @@ class ColumnMap:
             [time]
             column = "timestamp"
             format = "%d.%m.%Y %H:%M"       # or "iso"
-            zone = "+01:00"                 # or "UTC", or "stated"
+            zone = "+01:00"                 # or "UTC", "Europe/Oslo", "stated"
 
             [columns.spd]
             quantity = "current_speed"
@@ -228,32 +281,32 @@ class ColumnMap:
 
         ``text``: its other keys are those of ``ColumnMap`` and of ``Column``.
         ``where``: of the text, for messages.
+        ``questions``: whether zone and declination may be ``?``, for ``answered``.
         """
         table = parse_toml(text, where, refusal=RecordError)
-        _toml.check_filled(table, where=where)
-        of_text = ("delimiter", "decimal", "encoding", "skip_lines")
-        known = ("title", "origin", "time", "columns", "ignored", "depth_m", *of_text)
-        _toml.check_names(table, known, where=where)
+        if not questions:
+            _toml.check_filled(table, where=where)
+        usual = {"title": None, "delimiter": ",", "decimal": ".", "encoding": "utf-8"}
+        known = ("origin", "time", "columns", "ignored", "depth_m", "range_m", "skip_lines")
+        _toml.check_names(table, (*usual, *known, "header"), where=where)
         columns = _toml.table_of(table, "columns", where=where)
         time, in_time = _toml.table_of(table, "time", where=where), f"{where}, [time]"
-        _toml.check_names(time, ("column", "format", "zone"), where=in_time)
+        _toml.check_names(time, ("column", "format", "zone", "daylight_saving"), where=in_time)
+        rest: dict[str, Any] = {
+            **{one: _toml.text_of(table, one, where=where, default=usual[one]) for one in usual},
+            **{one: _toml.number_of(table, one, where=where) for one in ("depth_m", "range_m")},
+        }
         return cls(
-            title=_toml.text_of(table, "title", where=where),
             origin=parse_origin(_toml.text_of(table, "origin", where=where), where),
-            time_column=(
-                _toml.texts_of(time, "column", where=in_time)
-                if isinstance(time.get("column"), list)
-                else _toml.text_of(time, "column", where=in_time)
-            ),
+            time_column=_toml.names_of(time, "column", where=in_time),
             time_format=_toml.text_of(time, "format", where=in_time),
             time_zone=_toml.text_of(time, "zone", where=in_time),
             columns=tuple(parse_column(columns, name, where) for name in columns),
-            ignored=_toml.texts_of(table, "ignored", where=where),
-            delimiter=_toml.text_of(table, "delimiter", where=where, default=","),
-            depth_m=_toml.number_of(table, "depth_m", where=where),
-            decimal=_toml.text_of(table, "decimal", where=where, default="."),
-            encoding=_toml.text_of(table, "encoding", where=where, default="utf-8"),
+            ignored=_toml.names_of(table, "ignored", where=where, default=()),
             skip_lines=int(_toml.number_of(table, "skip_lines", where=where) or 0),
+            header=_toml.truth_of(table, "header", where=where),
+            daylight_saving=_toml.truth_of(time, "daylight_saving", where=in_time),
+            **rest,
         )
 
     @classmethod
@@ -289,33 +342,54 @@ class ColumnMap:
 
     @property
     def read_columns(self) -> tuple[Column, ...]:
-        """The columns that are read: those of the chosen depth and those without one."""
-        return tuple(c for c in self.columns if c.depth_m is None or c.depth_m == self.depth_m)
+        """The columns that are read: those of the chosen place and those without one."""
+        return tuple(
+            column
+            for column in self.columns
+            if column.depth_m in {None, self.depth_m} and column.range_m in {None, self.range_m}
+        )
 
-    def taken_at(self, depth_m: float) -> Self:
-        """The same map, reading another depth of the profile [m].
+    @property
+    def zone(self) -> tzinfo | None:
+        """The zone of times that do not say theirs; None where they must."""
+        return parse_zone(self.time_zone, where=self.title)
 
-        Raises RecordError: where the profile has no such depth.
+    def taken_at(self, depth_m: float | None = None, range_m: float | None = None) -> Self:
+        """The same map, reading another place of the profile [m].
+
+        Raises RecordError: where the profile has no such depth, or distance from the instrument.
         """
-        if all(column.depth_m != depth_m for column in self.columns):
+        for name, place in (("depth_m", depth_m), ("range_m", range_m)):
+            if place is not None and all(getattr(one, name) != place for one in self.columns):
+                raise RecordError(
+                    f"{self.title}: no column has {name} = {place:g}{self._places()}."
+                )
+        depth_m = self.depth_m if depth_m is None else depth_m
+        return replace(self, depth_m=depth_m, range_m=self.range_m if range_m is None else range_m)
+
+    @property
+    def open_questions(self) -> tuple[str, ...]:
+        """The options whose answers the map leaves to the user."""
+        turns = any(math.isnan(column.declination_deg or 0.0) for column in self.columns)
+        return ("--zone",) * (self.time_zone == "?") + ("--declination-deg",) * turns
+
+    def answered(self, *, zone: str | None = None, declination_deg: float | None = None) -> Self:
+        """The same map, with what it leaves open: the zone of times, a declination [deg].
+
+        Raises RecordError: where the map does not leave that open.
+        """
+        given = {"--zone": zone, "--declination-deg": declination_deg}
+        answers = [name for name, one in given.items() if one is not None]
+        if extra := [name for name in answers if name not in self.open_questions]:
             raise RecordError(
-                f"{self.title}: no column is at a depth of {depth_m:g} m{self._depths()}."
+                f"{self.title}: {extra[0]} is for a map that leaves it open, and this one does "
+                "not. Leave the option out, or change the map."
             )
-        return replace(self, depth_m=depth_m)
-
-    def parse_time(self, text: str) -> datetime:
-        """The time that a cell says, in UTC.
-
-        Raises ValueError: where the text is no time of the map's format, or does not say its zone
-        and must.
-        """
-        time = parse_time(text, self.time_format)
-        if time.tzinfo is None:
-            zone = parse_zone(self.time_zone)
-            if zone is None:
-                raise ValueError("it does not say its zone")
-            time = time.replace(tzinfo=zone)
-        return time.astimezone(UTC)
+        columns = tuple(
+            one if one.declination_deg is None else replace(one, declination_deg=declination_deg)
+            for one in (self.columns if declination_deg is not None else ())
+        )
+        return replace(self, time_zone=zone or self.time_zone, columns=columns or self.columns)
 
     def _check_text(self) -> None:
         for name, value, known in (
@@ -340,12 +414,14 @@ class ColumnMap:
         if not self.time_columns:
             raise RecordError(f"{self.title}: no column holds the time. Name it under [time].")
 
-    def _depths(self) -> str:
+    def _places(self) -> str:
         """What a refusal adds where the map holds a profile."""
-        depths = sorted({c.depth_m for c in self.columns if c.depth_m is not None})
-        if not depths:
-            return ""
-        return f"; its profile has {', '.join(f'{depth:g}' for depth in depths)} m"
+        found = [
+            f"{name} of {', '.join(f'{place:g}' for place in sorted(places))}"
+            for name in ("depth_m", "range_m")
+            if (places := {p for c in self.columns if (p := getattr(c, name)) is not None})
+        ]
+        return f"; its profile has {' and '.join(found)}" if found else ""
 
 
 @cache
@@ -353,7 +429,7 @@ def shipped_maps() -> Mapping[str, ColumnMap]:
     """By name, the column maps of the package: buoys, a current profile and a wave hindcast."""
     return {
         file.name.removesuffix(".toml"): ColumnMap.from_toml(
-            file.read_text(encoding="utf-8"), where=file.name
+            file.read_text(encoding="utf-8"), where=file.name, questions=True
         )
         for file in sorted((files("seacage.records") / "maps").iterdir(), key=lambda one: one.name)
     }
@@ -378,15 +454,18 @@ def parse_column(columns: _toml.Table, name: str, file: str) -> Column:
     where = f"[columns.{name}]"
     table = _toml.table_of(columns, name, where=file)
     try:
-        _toml.check_names(table, ("quantity", "unit", "sense", "depth_m", "missing"), where=where)
-        return Column(
-            name=name,
-            quantity=_toml.text_of(table, "quantity", where=where),
-            unit=_toml.text_of(table, "unit", where=where, default=""),
-            sense=_toml.text_of(table, "sense", where=where, default=""),
-            depth_m=_toml.number_of(table, "depth_m", where=where),
-            missing=_toml.numbers_of(table, "missing", where=where),
-        )
+        numbers = ("declination_deg", "depth_m", "range_m")
+        texts = ("unit", "sense", "north")
+        _toml.check_names(table, ("quantity", "missing", *texts, *numbers), where=where)
+        if table.get("declination_deg") == "?":  # of a shipped map; others are refused before
+            table = {**table, "declination_deg": math.nan}
+        rest: dict[str, Any] = {
+            **{one: _toml.text_of(table, one, where=where, default="") for one in texts},
+            **{one: _toml.number_of(table, one, where=where) for one in numbers},
+        }
+        missing = _toml.numbers_of(table, "missing", where=where)
+        quantity = _toml.text_of(table, "quantity", where=where)
+        return Column(name=name, quantity=quantity, missing=missing, **rest)
     except RecordError as error:
         raise RecordError(f"{file}: {error}") from error
 
@@ -400,46 +479,31 @@ def parse_origin(text: str, where: str) -> Origin:
         raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
 
 
-def parse_zone(text: str) -> timezone | None:
-    """A zone of fixed offset; None for ``stated``.
-
-    Raises RecordError: any other text, names of zones too.
-    """
-    if text == "stated":
-        return None
-    if text == "UTC":
-        return UTC
-    match = re.fullmatch(r"([+-])(0\d|1[0-4]):([0-5]\d)", text)
-    if match is None:
-        raise RecordError(
-            f"The time zone {text!r} cannot be read. "
-            'Declare "UTC", an offset such as "+01:00", or "stated" where each time says its own.'
-        )
-    offset = timedelta(hours=int(match[2]), minutes=int(match[3]))
-    return timezone(offset if match[1] == "+" else -offset)
-
-
-def check_components(keys: Iterable[str], *, where: str) -> None:
+def check_components(columns: Iterable[Column], *, where: str) -> None:
     """Refuse half a vector, and a current that is declared in two ways.
 
-    Raises RecordError: one component without the other, or components beside speed or direction.
+    Raises RecordError: one component without the other, or of another north, or components beside
+    speed or direction.
     """
-    keys = set(keys)
-    components = keys & set(_COMPONENTS)
-    if components and (len(components) == 1 or keys & set(_CURRENT)):
+    norths = {column.key: str(column.declination_deg) for column in columns}
+    components = norths.keys() & set(_COMPONENTS)
+    one_north = len({norths[key] for key in components}) < 2
+    if components and (len(components) == 1 or norths.keys() & set(_CURRENT) or not one_north):
         raise RecordError(
-            f"{where}: a current is current_east with current_north, or current_speed with "
-            f"current_direction; here {', '.join(sorted(keys))}. Ignore the columns too many."
+            f"{where}: a current is current_east with current_north, both of one north, or "
+            f"current_speed with current_direction; here {', '.join(sorted(norths))}. Ignore the "
+            "columns too many."
         )
 
 
-def vectors_joined(
-    values: Mapping[str, Float[np.ndarray, " t"]],
+def join_vectors(
+    values: Mapping[str, Float[np.ndarray, " t"]], columns: Iterable[Column]
 ) -> dict[str, Float[np.ndarray, " t"]]:
     """The components of a current, where there are any, as its speed and where it goes."""
     joined = dict(values)
     if joined.keys() >= set(_COMPONENTS):
         east, north = (joined.pop(key) for key in _COMPONENTS)
+        turn = next(c.declination_deg or 0.0 for c in columns if c.key in _COMPONENTS)
         joined["current_speed_m_s"] = np.hypot(east, north)
-        joined["current_to_deg"] = np.degrees(np.arctan2(east, north)) % 360.0
+        joined["current_to_deg"] = (np.degrees(np.arctan2(east, north)) + turn) % 360.0
     return joined

@@ -3,17 +3,25 @@
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
 from seacage.records._keys import KEYS
-from seacage.records._readers._column_map import Column, ColumnMap, shipped_maps, vectors_joined
+from seacage.records._readers._column_map import (
+    LEAD,
+    Column,
+    ColumnMap,
+    join_vectors,
+    parse_time,
+    shipped_maps,
+)
+from seacage.records._readers._local_time import utc_times
 from seacage.records._readers._ndbc import is_ndbc, ndbc_table
-from seacage.records._readers._table import PLAIN, Table, read_table, read_text, text_table
+from seacage.records._readers._table import PLAIN, Layout, Table, read_table, read_text, text_table
 from seacage.records._record import Record
-from seacage.records._times import microseconds
 
 _YEARS = range(1900, 2200)
 _CONSTANT = 12  # equal values that make a column one that never changes
@@ -27,15 +35,15 @@ def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     for column in columns.read_columns:
         numbers, strange = _numbers(table, column, columns.decimal)
         values[column.key] = column.convert(numbers)
-        notes += strange
+        notes += [*strange, *column.declination_notes]
     if columns.depth_m is not None:
         notes.append(f"{columns.title}: read at a depth of {columns.depth_m:g} m.")
-    record = in_order(
-        _times(table, columns), vectors_joined(values), stream=stream, origin=columns.origin
-    )
-    record = _constants_doubted(record)
+    if columns.range_m is not None:
+        notes.append(f"{columns.title}: read {columns.range_m:g} m from the instrument.")
+    times, values = _times(table, columns), join_vectors(values, columns.read_columns)
+    record = _constants_doubted(in_order(times, values, stream=stream, origin=columns.origin))
     if table.cut:
-        record = _last_row_doubted(record, table, columns)
+        record = _last_row_doubted(record, table, times[-1])
     return replace(record, notes=(*notes, *record.notes))
 
 
@@ -70,7 +78,7 @@ def read_rows(
     path
         Of the file, for messages.
     header, rows
-        The header's line, and whole lines from anywhere below it.
+        The header's line, where there is one, and whole lines from anywhere below it.
     columns
         What the columns mean; by the header where None.
     first_line
@@ -78,15 +86,20 @@ def read_rows(
     stream
         What to call the stream.
     """
-    between = "\n" * max(1, first_line - 1)  # blank lines are skipped, and counted
-    table = text_table(
-        path, header.rstrip("\r\n") + between + rows, delimiter=(columns or PLAIN).delimiter
-    )
-    return record_in(table, columns or recognise(table), stream=stream)
+    layout = _layout(columns)
+    between = "\n" * max(layout.header, first_line - 1)  # blank lines are skipped, and counted
+    above = header.rstrip("\r\n") if layout.header else ""
+    table = text_table(path, above + between + rows, layout)
+    return record_in(table, _map_of(table, columns), stream=stream)
+
+
+def _layout(columns: ColumnMap | None) -> Layout:
+    """How rows are written that come without the lines before their header."""
+    return Layout(delimiter=columns.delimiter, header=columns.header) if columns else PLAIN
 
 
 def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> None:
-    """Refuse a table whose rows could not be read, by its header alone.
+    """Refuse a table whose rows could not be read, by its header, or first row without one.
 
     Raises RecordError: the header is not that of the map; without one, of no shipped map. An
     encoding that cannot be read in parts.
@@ -94,7 +107,7 @@ def check_rows(path: Path, header: str, *, columns: ColumnMap | None = None) -> 
     if columns is not None and columns.encoding == "utf-16":
         raise RecordError(f"{path}: UTF-16 cannot be read in parts. Let the logger write UTF-8.")
     # A table needs a row to be one.
-    table = text_table(path, f"{header.rstrip()}\n{header}", delimiter=(columns or PLAIN).delimiter)
+    table = text_table(path, f"{header.rstrip()}\n{header}", _layout(columns))
     _map_of(table, columns)
 
 
@@ -120,10 +133,9 @@ def _constants_doubted(record: Record) -> Record:
     )
 
 
-def _last_row_doubted(record: Record, table: Table, columns: ColumnMap) -> Record:
+def _last_row_doubted(record: Record, table: Table, last: np.datetime64) -> Record:
     """Suspect the last row of a file that ends without a line end: a number may be cut there."""
-    last = _time(table.rows[-1], table.lines[-1], table, columns)
-    row = record.time == np.int64(last).view("datetime64[us]")
+    row = record.time == last
     doubted = {
         key: np.where(row, Flag.SUSPECT, flags).astype(np.uint8)
         for key, flags in record.flags.items()
@@ -151,16 +163,14 @@ def recognise(table: Table) -> ColumnMap:
     if fitting:
         raise RecordError(
             f"{table.path}: its header fits the column maps {' and '.join(fitting)}, and nothing "
-            "in the file says which. Name one: `--columns NAME`, or "
-            'columns=shipped_maps()["NAME"].'
+            "in the file says which. Name one: --columns NAME."
         )
     name = max(maps, key=lambda name: len(maps[name].names & known))
     shared = len(maps[name].names & known) > 1
     hint = f"The nearest, {name}, {_difference(table, maps[name])}. " if shared else ""
     raise RecordError(
         f"{table.path}, line {table.header_line}: no shipped column map has the columns "
-        f"{', '.join(table.header)}. {hint}Describe the file in a column map (`seacage field "
-        "import FILE MAP --inspect` begins one) and pass it as columns=ColumnMap.read(…)."
+        f"{', '.join(table.header)}. {hint}Describe the file in a column map for --columns{LEAD}."
     )
 
 
@@ -170,8 +180,14 @@ def _map_of(table: Table, columns: ColumnMap | None) -> ColumnMap:
         return recognise(table)
     if columns.names != frozenset(table.header):
         raise RecordError(
-            f"{table.path}, line 1: the map {columns.title!r} {_difference(table, columns)}. "
-            "Give the map of this file; a column that is not to be read goes under ignored."
+            f"{table.path}, line {table.header_line}: the map {columns.title!r} "
+            f"{_difference(table, columns)}. Give the map of this file{LEAD}; a column that is "
+            "not to be read goes under ignored."
+        )
+    if columns.open_questions:
+        raise RecordError(
+            f"{table.path}: neither the file nor the map {columns.title!r} answers "
+            f"{' and '.join(columns.open_questions)}. Give what you know of the instrument."
         )
     return columns
 
@@ -190,24 +206,30 @@ def _difference(table: Table, columns: ColumnMap) -> str:
 
 
 def _times(table: Table, columns: ColumnMap) -> np.ndarray:
-    rows = zip(table.rows, table.lines, strict=True)
-    times = [_time(row, line, table, columns) for row, line in rows]
-    return np.array(times, dtype=np.int64).view("datetime64[us]")
+    zone = columns.zone
+    at = [table.header.index(name) for name in columns.time_columns]
+    texts = [" ".join(row[place] for place in at) for row in table.rows]
 
+    def row_name(row: int) -> str:
+        name = " ".join(columns.time_columns)
+        return f"{table.path}, line {table.lines[row]}: {name} = {_short(texts[row])}"
 
-def _time(row: tuple[str, ...], line: int, table: Table, columns: ColumnMap) -> int:
-    text = " ".join(row[table.header.index(name)] for name in columns.time_columns)
-    try:
-        time = columns.parse_time(text)
-        if time.year not in _YEARS:
-            raise ValueError(f"no record is from the year {time.year}")
-        return microseconds(time)
-    except (ValueError, OverflowError, OSError) as error:
-        raise RecordError(
-            f"{table.path}, line {line}: {' '.join(columns.time_columns)} = {_short(text)} is no "
-            f"time of the format {columns.time_format!r} ({error}). Declare the file's format "
-            "and zone."
-        ) from error
+    def time(row: int, text: str) -> datetime:
+        try:
+            time = parse_time(text, columns.time_format)
+            if time.year not in _YEARS:
+                raise ValueError(f"no record is from the year {time.year}")
+            if time.tzinfo is None and zone is None:
+                raise ValueError("it does not say its zone")
+        except (ValueError, OverflowError, OSError) as error:
+            raise RecordError(
+                f"{row_name(row)} is no time of the format {columns.time_format!r} ({error}). "
+                f"Declare the file's format and zone under [time] of its map{LEAD}."
+            ) from error
+        return time
+
+    times = [time(row, text) for row, text in enumerate(texts)]
+    return utc_times(times, zone, may_change=columns.daylight_saving, row=row_name)
 
 
 def _short(text: str) -> str:

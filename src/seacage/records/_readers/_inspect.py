@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from datetime import UTC
+from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from seacage.conventions import RecordError
 from seacage.records._readers._cf import is_netcdf
-from seacage.records._readers._column_map import parse_time
+from seacage.records._readers._column_map import parse_time, shipped_maps
 from seacage.records._readers._csv import number_in, recognise
 from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
@@ -29,28 +30,21 @@ from seacage.records._readers._table import (
 from seacage.records._times import microseconds
 
 _ROWS = 20_000  # as many rows are looked at
-_FORMATS = (
-    "iso",
-    "%d.%m.%Y %H:%M:%S",
-    "%d.%m.%Y %H:%M",
-    "%d/%m/%Y %H:%M:%S",
-    "%d/%m/%Y %H:%M",
-    "%m/%d/%Y %H:%M:%S",
-    "%m/%d/%Y %H:%M",
-    "%Y/%m/%d %H:%M:%S",
-    "%Y/%m/%d %H:%M",
-    "%Y%m%d%H%M",
-)
+_DATES = ("%d.%m.%Y", "%d.%m.%y", "%d/%m/%Y", "%m/%d/%Y", "%Y/%m/%d", "%d-%m-%Y")
+_CLOCKS = ("%H:%M:%S", "%H:%M", "%H:%M:%S.%f", "%H.%M", "%I:%M:%S %p", "%I:%M %p")
+_FORMATS = ("iso", *(f"{date} {clock}" for date in _DATES for clock in _CLOCKS), "%Y%m%d%H%M")
+_DATE = r"\d{1,4}([-./])\d{1,2}\1\d{1,4}"  # a cell that holds no more than a date
+_MARK = r"\d[-/.:T ]\d"  # between the parts of a time: numbers pass for ISO dates (20180126)
 _SENTINELS = (99.0, 99.9, 99.99, 999.0, 999.9, 9999.0, -9.0, -99.0, -999.0, -9999.0, -32768.0)
 _NAMES: tuple[tuple[str, str], ...] = (
     (r"(wave|peak|mean).*dir|^(mwd|thq|dirm|dirp|mdir|wdirw)$", "wave_direction"),
     (r"^(wvht|hs|hm0|swh|vhm0|hsig)$|sig.*height|wave.*height", "hs"),
     (r"^(dpd|tp|vtpk)$|peak.*period", "tp"),
-    (r"wind|gust|^w(spd|dir|10)$|^d10$", ""),
+    (r"wind|gust|^w(spd|dir|10)$|^d10$|sound", ""),
     (r"(^|_|\b)(u|east|ve|vel_?e|u_?vel)(\b|_|$)|eastward", "current_east"),
     (r"(^|_|\b)(v|north|vn|vel_?n|v_?vel)(\b|_|$)|northward", "current_north"),
     (
-        r"curr.*dir|^dir(ection)?\d*$|^dir(ection)?_(to|from|towards)|retn|^set$",
+        r"curr.*dir|^dir(ection)?(#?\d*)$|^dir(ection)?_(to|from|towards)|retn|^set$",
         "current_direction",
     ),
     (r"speed|spd|veloc|fart|strøm", "current_speed"),
@@ -70,6 +64,9 @@ _SPELLED: tuple[tuple[str, str], ...] = (
     (r"[_\[( ]m[\])]?$", "m"),
     (r"[_\[( ]s(ec)?[\])]?$", "s"),
 )
+# A current is declared in one of two ways
+_WAYS = (("current_speed", "current_direction"), ("current_east", "current_north"))
+_MAGNETIC = r"mag|deg\.?\s?m\b|°\s?m\b"
 _UNITS_OF: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(
         ("current_speed", "current_east", "current_north"), ("m/s", "cm/s", "mm/s", "km/h", "knot")
@@ -127,7 +124,7 @@ def inspect_file(path: Path | str) -> Inspection:
             finding = "is a file of NDBC, whose names, units, senses and zone are documented."
             advice = "It needs no map: import it as it is."
             return Inspection(findings=(f"{path.name} {finding}", advice), map_text="")
-        table = text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
+        table = text_table(path, text, layout)
     return _inspect_table(table, layout)
 
 
@@ -145,7 +142,16 @@ def _layout(path: Path) -> tuple[Layout, str]:
     cells = [cell for line in lines[first + 1 :] for cell in _split(line, delimiter)]
     comma = delimiter != "," and any(re.fullmatch(r"\s*-?\d+,\d+\s*", cell) for cell in cells)
     skip = text.splitlines().index(lines[first]) if lines else 0
-    return Layout(encoding, delimiter, "," if comma else ".", skip), text
+    decimal = "," if comma else "."
+    named = not lines or _are_names(_split(lines[first], delimiter), decimal)
+    return Layout(encoding, delimiter, decimal, skip, named), text
+
+
+def _are_names(cells: Sequence[str], decimal: str) -> bool:
+    """Whether a table's first cells are a header: there is no date, and not numbers alone."""
+    texts = [cell.strip('" ') for cell in cells]
+    dated = any(re.match(_DATE, text) for text in texts)
+    return not dated and any(number_in(text, decimal) is None for text in texts)
 
 
 def _decode(path: Path, encodings: tuple[str, ...]) -> tuple[str, str]:
@@ -175,54 +181,71 @@ def _inspect_table(table: Table, layout: Layout) -> Inspection:
         f"Its cells are parted by {layout.delimiter!r}, its decimals by {layout.decimal!r}.",
     ]
     try:
-        findings.append(f"It fits a known map and needs none: {recognise(table).title}.")
+        fits = f"It fits a known map and needs none: {recognise(table).title}."
     except RecordError:
-        findings.append("No shipped map fits its columns.")
-    time_names, time_lines, time_findings = _time(table)
+        fits = "No shipped map fits its columns."
+    if not layout.header:
+        fits = "It has no header, so its columns are named by number, from 1."
+        known = (name for name, one in shipped_maps().items() if not one.names ^ {*table.header})
+        fits += "".join(f" The shipped map {name} has as many." for name in known)
+    findings.append(fits)
+    time_names, time_lines, time_findings = _time(table, layout)
     findings += time_findings
     if table.cut:
         findings.append("Suspicious: it ends without a line end; the last row may be cut.")
     guesses: list[_Guess] = []
     for name in table.header:
         if name not in time_names:
-            seen = {(one.quantity, _depth(one.name)) for one in guesses}
-            guesses.append(_guess(table, name, layout.decimal, seen))
+            seen = {one.quantity for one in guesses if _place(one.name) == _place(name)}
+            guesses.append(_guess(table, name, layout, seen))
     findings += [one.finding for one in guesses]
     return Inspection(findings=tuple(findings), map_text=_toml(table, layout, time_lines, guesses))
 
 
-def _time(table: Table) -> tuple[tuple[str, ...], list[str], list[str]]:
+def _time(table: Table, layout: Layout) -> tuple[tuple[str, ...], list[str], list[str]]:
     """The time's columns, their lines in the map, and what was found."""
-    best = _time_column(table)
+    best = _time_columns(table)
     if best is None:
         finding = "No column reads as a time; name it, or the several that make it, under [time]."
         return (), ['column = "?"', 'format = "?"', 'zone = "?"'], [finding]
-    name, formats = best
-    cells = table.column(name)[:_ROWS]
+    names, cells, formats = best
     stated = parse_time(cells[0], formats[0]).tzinfo is not None
-    zone = 'zone = "stated"  # each time says it' if stated else 'zone = "?"  # "UTC", "+01:00"'
+    zone = 'zone = "?"  # "UTC", "+01:00"; "Europe/Oslo" if its clock follows daylight saving'
+    spelled = "not said"
+    if stated:
+        zone, spelled = 'zone = "stated"  # each time says it', "stated in each"
+    elif re.search(r"\b(utc|gmt)\b", " ".join(names).lower()):
+        zone, spelled = 'zone = "UTC"  # for its name', "UTC, for its name"
     form = f"format = {_quote(formats[0])}"
-    stated_where = "stated in each" if stated else "not said"
-    findings = [
-        f"{name!r} is the time, in the format {' or '.join(formats)}; its zone is {stated_where}."
-    ]
+    spoken = " with ".join(repr(name) for name in names)
+    form_text = " or ".join(formats)
+    findings = [f"{spoken} is the time, in the format {form_text}; its zone is {spelled}."]
     if len(formats) > 1:
-        form = f'format = "?"  # {" or ".join(formats)}: the days do not tell'
+        form = f'format = "?"  # {form_text}: the days do not tell'
         findings.append("Suspicious: day and month cannot be told apart in it.")
-    lines = [f"column = {_quote(name)}", form, zone]
-    return (name,), lines, findings + _cadence(cells, formats[0])
+    column = ", ".join(_key(name, layout) for name in names)
+    lines = [f"column = {column if len(names) == 1 else f'[{column}]'}", form, zone]
+    return names, lines, findings + _cadence(cells, formats[0])
 
 
-def _time_column(table: Table) -> tuple[str, list[str]] | None:
-    """Return the first column whose every cell is a time, with the formats that fit them all."""
-    for name in table.header:
-        cells = table.column(name)[:_ROWS]
-        # Numbers pass for ISO dates (20180126), but a time has a mark between its parts.
-        if not re.search(r"\d[-/.:T ]\d", cells[0]):
-            continue
-        formats = [form for form in _FORMATS if all(_fits(cell, form) for cell in cells)]
-        if formats and not all(number_in(cell, ".") is not None for cell in cells):
-            return name, formats
+def _time_columns(table: Table) -> tuple[tuple[str, ...], list[str], list[str]] | None:
+    """The date's and the clock's columns, or the first whose every cell is a time.
+
+    With their texts, joined, and the formats that fit them all.
+    """
+    pairs = [
+        (date, clock)
+        for date, clock in pairwise(table.header)
+        if re.fullmatch(_DATE, table.column(date)[0].strip())
+        and (":" in table.column(clock)[0] or re.match(r"kl|tid|time|clock", clock.lower()))
+    ]
+    for names in (*pairs, *((name,) for name in table.header)):
+        columns = [table.column(name)[:_ROWS] for name in names]
+        cells = [" ".join(parts) for parts in zip(*columns, strict=True)]
+        if re.search(_MARK, cells[0]) and any(number_in(cell, ".") is None for cell in cells):
+            formats = [form for form in _FORMATS if all(_fits(cell, form) for cell in cells)]
+            if formats:
+                return names, cells, formats
     return None
 
 
@@ -258,31 +281,39 @@ def _cadence(cells: Sequence[str], form: str) -> list[str]:
     return findings
 
 
-def _guess(table: Table, name: str, decimal: str, seen: set[tuple[str, float | None]]) -> _Guess:
+def _guess(table: Table, name: str, layout: Layout, seen: set[str]) -> _Guess:
+    """What a column seems to be, beside the quantities of the same place that were seen."""
     cells = table.column(name)[:_ROWS]
-    numbers = [number_in(cell, decimal) for cell in cells]
+    numbers = [number_in(cell, layout.decimal) for cell in cells]
     known = np.array([n for n in numbers if n is not None and np.isfinite(n)])
     quantity = _quantity(name) if known.size else ""
-    if quantity and (quantity, _depth(name)) in seen:
+    if known.size and known.min() < known.max() and not layout.header:
+        quantity = "?"
+    other = next((two for one, two in (_WAYS, _WAYS[::-1]) if quantity in one), ())
+    if quantity not in {"", "?"} and seen & {quantity, *other}:
         finding = f"{name!r} looks like {quantity} too, and one is read; it is under ignored."
         return _Guess(name, "", (), finding)
     if not quantity:
         return _Guess(name, "", (), f"{name!r} is no quantity that is read; it is under ignored.")
     span = f"{known.min():g} to {known.max():g}"
-    lines = [f"quantity = {_quote(quantity)}  # for its name; {span} in the file"]
+    why = "or list the column as ignored" if quantity == "?" else "for its name"
+    lines = [f"quantity = {_quote(quantity)}  # {why}; {span} in the file"]
     lines.append(_unit_line(name, quantity, known))
     if quantity.endswith("direction"):
         lines.append(_sense_line(name, quantity))
-    if (depth := _depth(name)) is not None and not quantity.startswith(("tension", "depth")):
-        lines.append(f"depth_m = {depth:g}  # for its name")
+    if quantity.endswith(("direction", "east", "north")) and re.search(_MAGNETIC, name.lower()):
+        lines.append('north = "magnetic"  # for its name')
+        lines.append('declination_deg = "?"  # of the place and year, positive to the east')
+    if (place := _place(name)) and not quantity.startswith(("tension", "depth")):
+        lines.append(f"{place[0]} = {place[1]:g}  # for its name")
     odd = _oddities(numbers, known)
     held = [value for value in _SENTINELS if np.sum(known == value) > 1]
     if held:
         lines.append(f"# missing = {held}  # if these stand for no value")
     open_ = ", ".join(line.split(" =")[0] for line in lines if '"?"' in line)
     missing = f"; fill in its {open_}" if open_ else ""
-    finding = f"{name!r} looks like {quantity}, {span}{missing}.{odd}"
-    return _Guess(name, quantity, tuple(lines), finding)
+    seems = "" if quantity == "?" else f" looks like {quantity},"
+    return _Guess(name, quantity, tuple(lines), f"{name!r}{seems or ' is'} {span}{missing}.{odd}")
 
 
 def _quantity(name: str) -> str:
@@ -296,9 +327,9 @@ def _quantity(name: str) -> str:
 
 def _unit_line(name: str, quantity: str, known: np.ndarray) -> str:
     for pattern, unit in _SPELLED:
-        if re.search(pattern, name.lower()) and unit in _UNITS_OF[quantity]:
+        if re.search(pattern, name.lower()) and unit in _UNITS_OF.get(quantity, ()):
             return f"unit = {_quote(unit)}  # for its name"
-    hint = " or ".join(_UNITS_OF[quantity])
+    hint = " or ".join(_UNITS_OF.get(quantity, ("of the file's numbers",)))
     if quantity == "current_speed":
         hint += "; a sea current is mostly below 2 m/s"
     return f'unit = "?"  # {hint}; the largest is {known.max():g}'
@@ -322,16 +353,22 @@ def _oddities(numbers: Sequence[float | None], known: np.ndarray) -> str:
     return odd
 
 
-def _depth(name: str) -> float | None:
+def _place(name: str) -> tuple[str, float] | None:
+    """Where in a profile a column is, by its name: Dir#1(5.4m) has the number of its cell first.
+
+    Such a name has the distance from the instrument, others the depth.
+    """
+    if match := re.search(r"#\d+ ?\((\d+(?:\.\d+)?) ?m\)", name):
+        return "range_m", float(match[1])
     match = re.search(r"(?:^|_|\b)(\d+(?:\.\d+)?)_?m(?:_|\b|$)(?!_s)", name)
-    return float(match[1]) if match else None
+    return ("depth_m", float(match[1])) if match else None
 
 
 def _toml(
     table: Table, layout: Layout, time_lines: Sequence[str], guesses: Sequence[_Guess]
 ) -> str:
-    ignored = ", ".join(_quote(one.name) for one in guesses if not one.quantity)
-    depths = sorted({d for one in guesses if one.quantity and (d := _depth(one.name)) is not None})
+    ignored = ", ".join(_key(one.name, layout) for one in guesses if not one.quantity)
+    places = {place for one in guesses if one.quantity and (place := _place(one.name))}
     file = "".join(letter if letter.isprintable() else "?" for letter in table.path.name)
     lines = [
         f"# Begun by `seacage field import --inspect` from {file}. Fill in",
@@ -340,8 +377,9 @@ def _toml(
         'origin = "?"  # "measured" or "computed"',
         f"ignored = [{ignored}]",
     ]
-    if depths:
-        lines.append(f'depth_m = "?"  # which to read: {", ".join(f"{d:g}" for d in depths)}')
+    for kind in sorted({kind for kind, _ in places}):
+        found = ", ".join(f"{place:g}" for one, place in sorted(places) if one == kind)
+        lines.append(f'{kind} = "?"  # which to read: {found}')
     lines += [
         f"{name} = {_quote(value)}"
         for name, value, usual in (
@@ -353,11 +391,17 @@ def _toml(
     ]
     if layout.skip_lines:
         lines.append(f"skip_lines = {layout.skip_lines}")
+    lines += ["header = false"] * (not layout.header)
     lines += ["", "[time]", *time_lines]
     for one in guesses:
         if one.quantity:
-            lines += ["", f"[columns.{_quote(one.name)}]", *one.lines]
+            lines += ["", f"[columns.{_key(one.name, layout)}]", *one.lines]
     return "\n".join(lines) + "\n"
+
+
+def _key(name: str, layout: Layout) -> str:
+    """A column as a map names it: by its name, or by number where there is no header."""
+    return _quote(name) if layout.header else name
 
 
 def _quote(text: str) -> str:

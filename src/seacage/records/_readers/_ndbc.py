@@ -6,8 +6,8 @@ UTC.
 """
 
 import re
+from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
 
 from seacage.conventions import Origin, RecordError
 from seacage.records._readers._column_map import Column, ColumnMap
@@ -20,21 +20,19 @@ _DOCUMENTED = re.compile(
 _START = re.compile(r"\s*#?(YY|YYYY)\s+MM\s+DD\s+hh\s")
 
 
-class _Known(NamedTuple):
-    quantity: str
-    unit: str  # of our column maps
-    spelled: str  # by NDBC
-    sense: str
-    missing: tuple[float, ...]
-
-
 _KNOWN = {
-    "WVHT": _Known("hs", "m", "m", "", (99.0,)),
-    "DPD": _Known("tp", "s", "sec", "", (99.0,)),
-    "MWD": _Known("wave_direction", "deg", "degT", "from", (999.0,)),
-    "SPD": _Known("current_speed", "cm/s", "cm/s", "", (99.0, 999.0, 999.9)),
-    "DIR": _Known("current_direction", "deg", "degT", "towards", (999.0,)),
+    one.name: one
+    for one in (
+        Column(name="WVHT", quantity="hs", unit="m", missing=(99.0,)),
+        Column(name="DPD", quantity="tp", unit="s", missing=(99.0,)),
+        Column(name="MWD", quantity="wave_direction", unit="deg", sense="from", missing=(999.0,)),
+        Column(name="SPD", quantity="current_speed", unit="cm/s", missing=(99.0, 999.0, 999.9)),
+        Column(
+            name="DIR", quantity="current_direction", unit="deg", sense="towards", missing=(999.0,)
+        ),
+    )
 }
+_SPELLED = {"m": "m", "s": "sec", "deg": "degT", "cm/s": "cm/s"}  # units, by NDBC
 
 
 def is_ndbc(text: str) -> bool:
@@ -88,6 +86,7 @@ def _map(table: Table, units: dict[str, str] | None) -> ColumnMap:
         time_column=time,
         time_format=" ".join((year, "%m", "%d", "%H", "%M")[: len(time)]),
         time_zone="UTC",
+        daylight_saving=False,  # documented
         columns=columns,
         ignored=tuple(name for name in table.header if name not in taken | set(time)),
         depth_m=min(depths) if depths else None,
@@ -101,21 +100,13 @@ def _columns(table: Table, units: dict[str, str] | None) -> list[Column]:
         if match is None:
             continue
         known = _KNOWN[match[1] or name]
-        if units is not None and units.get(name) != known.spelled:
+        if units is not None and units.get(name) != _SPELLED[known.unit]:
             raise RecordError(
                 f"{table.path}, line 2: the unit of {name} is {units.get(name)!r}, and NDBC's is "
-                f"{known.spelled!r}. Describe the file in a column map."
+                f"{_SPELLED[known.unit]!r}. Describe the file in a column map."
             )
-        columns.append(
-            Column(
-                name=name,
-                quantity=known.quantity,
-                unit=known.unit,
-                sense=known.sense,
-                depth_m=_depth(table, f"DEP{match[2]}") if match[2] else None,
-                missing=known.missing,
-            )
-        )
+        depth_m = _depth(table, f"DEP{match[2]}") if match[2] else None
+        columns.append(replace(known, name=name, depth_m=depth_m))
     return columns
 
 

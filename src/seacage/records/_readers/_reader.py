@@ -10,7 +10,7 @@ from seacage.conventions import Flag, RecordError, read_text
 from seacage.records._quality._check import check_record
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits
 from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
-from seacage.records._readers._column_map import ColumnMap, shipped_maps
+from seacage.records._readers._column_map import LEAD, ColumnMap, shipped_maps
 from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._record import Record
@@ -32,8 +32,8 @@ def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
     try:
         text = read_text(path, refusal=RecordError)
     except RecordError as error:
-        names = ", ".join(shipped_maps())
-        raise RecordError(f"{error} Give a map, or the name of a shipped one: {names}.") from error
+        known = f"Give a map{LEAD}, or the name of a shipped one: {', '.join(shipped_maps())}."
+        raise RecordError(f"{error} {known}") from error
     if _NETCDF.search(text):
         return NetcdfMap.from_toml(text, where=str(path))
     return ColumnMap.from_toml(text, where=str(path))
@@ -70,15 +70,16 @@ def read_record(
         To check the values of a foreign file against.
     """
     path = Path(path)
-    if is_netcdf(path):
-        if columns is None:
-            return read_netcdf(path)
-        if isinstance(columns, ColumnMap):
-            raise RecordError(f"{path}: a table's map is no NetCDF file's. Give a NetcdfMap.")
+    if not is_netcdf(path) and not isinstance(columns, NetcdfMap):
+        return _check(record_in(*split_table(path, columns), stream=stream), limits)
+    if is_netcdf(path) and columns is None:
+        return read_netcdf(path)
+    if is_netcdf(path) and isinstance(columns, NetcdfMap):
         return check_record(read_cf(path, columns, stream=stream), limits)
-    if isinstance(columns, NetcdfMap):
-        raise RecordError(f"{path}: a NetCDF file's map is no table's. Give a ColumnMap.")
-    return _check(record_in(*split_table(path, columns), stream=stream), limits)
+    this, other = ("NetCDF", "a table") if is_netcdf(path) else ("a table", "NetCDF")
+    raise RecordError(
+        f"{path}: this is {this}, and its map is of {other}. Give one of {this}{LEAD}."
+    )
 
 
 def known_map(path: Path | str) -> ColumnMap | None:

@@ -8,12 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 from seacage.conventions import TABLE_BYTES, RecordError, check_file, parse_json, read_bytes
-
-if TYPE_CHECKING:
-    from seacage.records._readers._column_map import ColumnMap
+from seacage.records._readers._column_map import LEAD, ColumnMap
 
 WHITESPACE = "whitespace"  # the delimiter of tables whose cells any number of blanks part
 # Most of a JSON answer, whose smallest parts take 30 times as much in memory
@@ -32,6 +30,7 @@ class Layout(NamedTuple):
     delimiter: str = ","
     decimal: str = "."
     skip_lines: int = 0
+    header: bool = True
 
 
 PLAIN = Layout()  # of a table of which nothing else is known
@@ -55,7 +54,7 @@ class Table:
         return [row[at] for row in self.rows]
 
 
-def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
+def read_table(path: Path, layout: ColumnMap | Layout) -> Table:
     """Read a table by its ending: ``.parquet``, ``.json`` (NOAA CO-OPS), else text.
 
     Raises RecordError: no such file, no such format, rows of unequal length, a column twice, no
@@ -66,7 +65,7 @@ def read_table(path: Path, layout: "ColumnMap | Layout") -> Table:
     text = read_text(path, layout.encoding)
     if path.suffix.lower() == ".json":
         return _coops_table(path, text)
-    return text_table(path, text, delimiter=layout.delimiter, skip_lines=layout.skip_lines)
+    return text_table(path, text, layout)
 
 
 def read_text(path: Path, encoding: str = "utf-8") -> str:
@@ -96,14 +95,17 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
     return text
 
 
-def text_table(path: Path, text: str, *, delimiter: str, skip_lines: int = 0) -> Table:
-    """Split text into a table.
+def text_table(path: Path, text: str, layout: ColumnMap | Layout) -> Table:
+    """Split text into a table, whose columns are numbered from 1 where it has no header.
 
     Raises RecordError: a row that cannot be split, or of another length than the header; no rows.
     """
-    rows, lines = _split(path, text, delimiter, skip_lines)
+    rows, lines = _split(path, text, layout.delimiter, layout.skip_lines)
     if not rows:
         raise RecordError(f"{path}: the file is empty. Give one with a header and rows.")
+    if not layout.header:
+        rows = [tuple(str(column) for column in range(1, len(rows[0]) + 1)), *rows]
+        lines = [lines[0], *lines]
     cut = bool(rows[1:]) and not text.endswith(("\n", "\r"))
     return make_table(path, rows, lines, cut=cut)
 
@@ -122,8 +124,9 @@ def make_table(
     for line, row in zip(lines, rows, strict=True):
         if len(row) != len(header):
             raise RecordError(
-                f"{path}, line {line}: {len(row)} cells under a header of {len(header)}. "
-                "Mend the row, or cut the file there; a shifted row is never guessed at."
+                f"{path}, line {line}: {len(row)} cells in a table of {len(header)} columns. "
+                "Mend the row, cut the file there, or declare what parts the cells as delimiter "
+                f"in a map{LEAD}; a shifted row is never guessed at."
             )
     if len(rows) == 1:
         raise RecordError(f"{path}: there is a header and no row. Give a file with values.")

@@ -171,13 +171,14 @@ def _report_field(record: "FieldRecord", out: Path) -> None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapOptions:
-    """The meaning of a file's columns, as far as the file does not say it.
+    """The meaning of a file's columns, as far as neither the file nor its map says it.
 
     Options:
         origin: Of a foreign NetCDF file: measured or computed.
-        zone: Of a foreign NetCDF file's times, where it names none.
+        zone: Of times that name none: UTC, an offset, or of a table Europe/Oslo.
         depth_m: Which depth of a profile.
         range_m: Which bin of a profile, from the instrument.
+        declination_deg: Of a table's magnetic directions, positive to the east.
     """
 
     columns: _options.Columns = None
@@ -185,11 +186,12 @@ class MapOptions:
     zone: str | None = None
     depth_m: float | None = None
     range_m: float | None = None
+    declination_deg: Annotated[float | None, typer.Option(min=-180.0, max=180.0)] = None
 
     def of(self, path: Path) -> "ColumnMap | NetcdfMap | None":
         """The map that was named, with what the other options add to it."""
         from seacage.conventions import Origin
-        from seacage.records import NetcdfMap, known_map, read_map
+        from seacage.records import ColumnMap, NetcdfMap, known_map, read_map
 
         options = {"time_zone": self.zone, "depth_m": self.depth_m, "range_m": self.range_m}
         given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
@@ -197,14 +199,17 @@ class MapOptions:
             if self.origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
                 raise refusal(f"--origin {self.origin!r} is unknown. Say measured or computed.")
             given |= {"origin": Origin(self.origin)}
-        chosen = read_map(self.columns) if self.columns else known_map(path) if given else None
-        if isinstance(chosen, NetcdfMap) or (chosen is None and given):
-            return replace(chosen or NetcdfMap(title=path.name), **given)
-        if chosen is not None and self.depth_m is not None and len(given) == 1:
-            return chosen.taken_at(self.depth_m)
-        if given:
-            raise refusal("--origin, --zone and --range-m are for NetCDF; a table's map says them.")
-        return chosen
+        chosen = read_map(self.columns) if self.columns else None
+        if chosen is None and (given or self.declination_deg is not None):
+            chosen = known_map(path) or NetcdfMap(title=path.name)
+        if isinstance(chosen, ColumnMap):
+            if self.origin is not None:
+                raise refusal("--origin is for NetCDF; the map of a table says it. Leave it out.")
+            chosen = chosen.answered(zone=self.zone, declination_deg=self.declination_deg)
+            return chosen.taken_at(self.depth_m, self.range_m)
+        if self.declination_deg is not None:
+            raise refusal("--declination-deg is for tables; of NetCDF [columns] in a map say it.")
+        return replace(chosen, **given) if chosen else None
 
 
 @group.command("import")

@@ -77,7 +77,7 @@ def test_currents_of_ndbc_are_read_at_the_upper_bin_towards(tmp_path):
         ("2014 09 11 17 50", "2014 13 11 17 50", "line 4: YY MM DD hh mm = '2014 13 11 17 50' is"),
         ("hh mm WDIR", "hh mm' WDIR", "line 1: the columns mm' are not as NDBC documents them"),
         ("GST  WVHT", "FOO  WVHT", "line 1: the columns FOO are not as NDBC documents them"),
-        ("120  5.0  6.0    MM", "120  5.0  6.0", "line 4: 13 cells under a header of 14"),
+        ("120  5.0  6.0    MM", "120  5.0  6.0", "line 4: 13 cells in a table of 14"),
     ],
 )
 def test_a_fault_in_a_file_of_ndbc_is_reported(tmp_path, old, new, sentence):
@@ -397,9 +397,9 @@ def test_a_map_of_a_netcdf_file_is_read_from_toml(tmp_path):
 
 
 def test_a_map_of_the_other_kind_is_refused(tmp_path):
-    with pytest.raises(RecordError, match="a NetCDF file's map is no table's"):
+    with pytest.raises(RecordError, match=r"this is a table, and its map is of NetCDF.*--inspect"):
         read_record(written(tmp_path / "x.csv", COOPS), columns=NetcdfMap())
-    with pytest.raises(RecordError, match="a table's map is no NetCDF file's"):
+    with pytest.raises(RecordError, match=r"this is NetCDF, and its map is of a table.*--inspect"):
         read_record(tmp_path / "x.nc", columns=shipped_maps()["nora10_waves"])
 
 

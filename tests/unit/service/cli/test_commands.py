@@ -273,6 +273,55 @@ def test_a_foreign_table_is_imported_and_its_bad_values_are_counted(buoy, tmp_pa
     assert answer("field", "check", out)["streams"] == reply["streams"]
 
 
+def refused_import(tmp_path, *words):
+    """What an import says that is refused, and that it wrote nothing."""
+    result = CliRunner().invoke(app, ["field", "import", *map(str, words), str(tmp_path / "o.nc")])
+    assert result.exit_code != 0
+    assert not (tmp_path / "o.nc").exists()
+    return result.stderr
+
+
+def test_a_logger_over_the_change_of_clocks_is_read_once_its_zone_is_named(tmp_path):
+    logger, chosen = tmp_path / "logger.csv", tmp_path / "map.toml"
+    clock = [f"28.10.2018;0{hour}:00;0,{at}" for at, hour in enumerate((1, 2, 2, 3, 4), start=1)]
+    logger.write_text("Dato;Kl;Fart (m/s)\n" + "\n".join(clock) + "\n")
+    assert "--inspect" in refused_import(tmp_path, logger)
+    answer("field", "import", logger, chosen, "--inspect")
+    begun = chosen.read_text().replace('origin = "?"', 'origin = "measured"')
+    chosen.write_text(begun.replace('zone = "?"', 'zone = "+01:00"'))
+    told = " ".join(refused_import(tmp_path, logger, "--columns", chosen).split())
+    assert "'28.10.2018 02:00' is where the clock steps by an hour" in told
+    chosen.write_text(begun.replace('zone = "?"', 'zone = "Europe/Oslo"'))
+    reply = answer("field", "import", logger, tmp_path / "o.nc", "--columns", chosen)
+    assert reply["streams"]["buoy-1"]["rows"] == 5
+    import xarray
+
+    with xarray.open_dataset(tmp_path / "o.nc") as kept:
+        assert [str(time)[11:13] for time in kept.time.values] == ["23", "00", "01", "02", "03"]
+
+
+def test_options_answer_what_a_shipped_map_leaves_open(tmp_path):
+    row = "10 28 2018 0{} 00 00" + " 0" * 17 + " 0.{} 356\n"
+    (tmp_path / "a.dat").write_text("".join(row.format(hour, hour) for hour in range(1, 6)))
+    words = (tmp_path / "a.dat", "--columns", "nortek_aquadopp_enu_26")
+    assert "nortek_aquadopp_enu_25" in refused_import(tmp_path, *words)
+    words = (tmp_path / "a.dat", "--columns", "nortek_aquadopp_enu_25")
+    assert "--zone and --declination-deg" in refused_import(tmp_path, *words)
+    words = (*words, "--declination-deg", "4.5")
+    assert "answers --zone." in " ".join(refused_import(tmp_path, *words).split())
+    assert "--origin is for NetCDF" in refused_import(tmp_path, *words, "--origin", "measured")
+    told = refused_import(tmp_path, *words, "--zone", "Europe/Oslo")
+    assert "nothing tells summer time" in " ".join(told.split())
+    reply = answer("field", "import", words[0], tmp_path / "o.nc", *words[1:], "--zone", "+01:00")
+    assert "4.5 deg of declination are added to 25." in reply["streams"]["buoy-1"]["notes"]
+
+
+def test_an_option_for_what_a_map_says_is_refused(tmp_path, buoy):
+    assert "--zone is for a map that leaves it open" in refused_import(
+        tmp_path, buoy, "--zone", "UTC"
+    )
+
+
 def test_a_field_record_is_checked_stream_by_stream(tmp_path):
     stand_in_field(stand_in_twin().cage, days=1.0).write(tmp_path / "field")
     streams = answer("field", "check", tmp_path / "field")["streams"]
