@@ -7,8 +7,7 @@ from typing import TypeVar
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.dynamics._kernel._balance import Balancing
-from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
+from seacage.dynamics._kernel._library import Balancing, Relaxation, Relaxing, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 

@@ -8,8 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium import _relax
-from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._kernel._library import Balance, Balancing, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow
 

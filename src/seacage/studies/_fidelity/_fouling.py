@@ -10,8 +10,8 @@ from seacage.campaigns import Plan, TruthParameters
 from seacage.conventions import Progress, no_progress
 from seacage.dynamics import Law
 from seacage.records import CampaignRecord
-from seacage.studies._drift import without_drift
 from seacage.studies._fidelity._windows import Windows
+from seacage.studies._shape_discrepancy import without_drift
 from seacage.studies._stages import Stages, count
 
 SPEEDS = (0.3, 0.5, 0.7)  # of the currents that the gap is settled in [m/s]
