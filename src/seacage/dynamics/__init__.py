@@ -16,10 +16,9 @@ from seacage.dynamics._physics._screens import (
 from seacage.dynamics._revision import PHYSICS
 from seacage.dynamics._settle import Response, net_load, rest_shape, settle
 from seacage.dynamics._time._extremes import Extremes, extremes
-from seacage.dynamics._time._fatigue import damage_equivalent_load
 from seacage.dynamics._time._follow import Followed, follow
 from seacage.dynamics._time._history import History
-from seacage.dynamics._time._line_loads import LineLoads
+from seacage.dynamics._time._line_loads import LineLoads, damage_equivalent_load
 from seacage.dynamics._time._segments import AbstractWeather
 from seacage.dynamics._time._simulate import simulate
 from seacage.dynamics._time._statistics import BODIES, Statistics, WaterLoad

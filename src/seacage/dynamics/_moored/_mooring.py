@@ -111,14 +111,10 @@ def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
     length, stiffness = segments(parts)
     directions, corners = _directions(cage)
     count, each = len(directions), len(length)
-    along = shape.position[1:, 0]
-    position = cage.corner_position[corners][:, None] + np.concatenate(
-        [
-            along[None, :, None] * directions[:, None],
-            np.broadcast_to(shape.position[1:, 1][None, :, None], (count, each, 1)),
-        ],
-        axis=-1,
-    )
+    along, up = shape.position[1:].T
+    position = np.repeat(cage.corner_position[corners][:, None], each, axis=1)
+    position[..., :2] += along[:, None] * directions[:, None]
+    position[..., 2] += up
     own = cage.node_count + len(cage.corner_position) + np.arange(count * each).reshape(count, each)
     chain = np.column_stack([cage.node_count + corners, own])
     bars = Bars.alike(

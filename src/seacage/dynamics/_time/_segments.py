@@ -117,7 +117,15 @@ class SegmentBatch:
                 level_z=-np.array(weathers[0].level_depth),
                 depth=build.cage.site.water_depth,
             ),
-            _steps(course, self._time_step),
+            Steps(
+                time_step=self._time_step,
+                each=course.steps,
+                hold=HOLD,
+                ramp=RAMP,
+                spin_up=course.spin_up * course.refreshes,
+                counted=course.samples * course.refreshes,
+                sample_every=0,
+            ),
             start,
         )
 
@@ -190,18 +198,6 @@ class SegmentBatch:
 def _due(since: float, every: float, step: float) -> bool:
     """Whether a look that comes at regular times comes in this step."""
     return since % every < step
-
-
-def _steps(course: Course, time_step: float) -> Steps:
-    return Steps(
-        time_step=time_step,
-        each=course.steps,
-        hold=HOLD,
-        ramp=RAMP,
-        spin_up=course.spin_up * course.refreshes,
-        counted=course.samples * course.refreshes,
-        sample_every=0,
-    )
 
 
 def _start(cage: Cage, assembly: Assembly, current: Stretch2) -> StretchNode3:
