@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._kernel._balance import Balance, Balancing
+from seacage.dynamics._kernel._library import Balance, Balancing
 from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,

@@ -11,7 +11,7 @@ from seacage.conventions import has_answer
 from seacage.dynamics import rest_shape, settle
 from seacage.dynamics._equilibrium._search import _balance, _first_shapes, _start
 from seacage.dynamics._kernel._library import kernel
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._moored._mooring import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.ocean import SeaState
 

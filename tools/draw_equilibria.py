@@ -14,7 +14,7 @@ from seacage.cage import Cage
 from seacage.conventions import Origin
 from seacage.dynamics import rest_shape
 from seacage.dynamics._equilibrium._search import _balance, _near, _seek, _start
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._moored._mooring import assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.figures._style import INK, LOW, MULTI, MUTED, blank_figure, head, style, write_figure
 

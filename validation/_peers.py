@@ -17,8 +17,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import GRAVITY, WATER_DENSITY
 from seacage.dynamics._moored._anchor_line import STEEL_DENSITY, resting_line, segments
-from seacage.dynamics._moored._mooring import ROPE_DRAG, anchor_assembly
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._moored._mooring import ROPE_DRAG, anchor_assembly, assemble
 
 CHAIN_WEIGHT = GRAVITY * (1.0 - WATER_DENSITY / STEEL_DENSITY)
 """Submerged weight of steel over its mass in air [N/kg]."""

@@ -8,8 +8,7 @@ import pytest
 from seacage.cage import MooringLines
 from seacage.conventions import GRAVITY
 from seacage.dynamics import catenary
-from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
+from seacage.dynamics._kernel._library import Balance, Balancing, Relaxation, Relaxing, kernel
 from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,

@@ -196,7 +196,7 @@ def test_a_stop_in_any_stage_loses_no_simulation(study, tmp_path):
 
 def test_a_twin_is_scored_alone_on_the_days_after_its_training_windows(study, folder, tmp_path):
     stages = chain(folder)
-    twin = Twin.read(stages.twin_folder)
+    twin = Twin.read(stages.ensure_twin(stages.recipe.training))
     scores = score_record(twin, stages.field, out=tmp_path, seed=RECIPE.seed)
     assert [score.means for score in scores] == [score.means for score in study.sensors]
     assert len(list(tmp_path.glob("*.svg"))) == 2 * len(scores)

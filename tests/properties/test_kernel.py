@@ -8,8 +8,7 @@ from benchmarks._newton import nearer
 from compiled import still_force
 from seacage.cage import Cage
 from seacage.dynamics import LAWS
-from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._kernel._library import Balance, Balancing, kernel
 from seacage.dynamics._moored._mooring import anchor_assembly
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow

@@ -6,10 +6,10 @@ from unittest.mock import Mock
 import numpy as np
 
 from seacage.conventions import Origin
-from seacage.studies._paper._level_one import LevelOneScore
 from seacage.studies._paper._shape_models import GCN_PAPER, PCA_PAPER, SHAPE
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._shape_study import ShapeStudy
+from seacage.studies._paper._study import LevelOneScore
 from seacage.studies._paper._trainings import SPREAD, ScoredWays, WayScore
 from seacage.studies._sensor_scores import Errors, SensorScore
 from seacage.twin import Twin

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.dynamics._physics._node_waves import wave_reach
+from seacage.dynamics._kernel._march_inputs import wave_reach
 from seacage.ocean import Waves
 
 

@@ -10,9 +10,8 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result, gravest
 from seacage.dynamics._equilibrium._search import Equilibria, equilibria
-from seacage.dynamics._moored._choice import Mooring, moor
+from seacage.dynamics._moored._choice import Mooring, moor, part
 from seacage.dynamics._moored._ends import mooring_result
-from seacage.dynamics._moored._parted import part
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import SteadyFlow, line_tension, nodal_force, total_net_force

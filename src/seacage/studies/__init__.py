@@ -5,9 +5,8 @@ from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._fidelity._study import FidelityStudy, fidelity_study
 from seacage.studies._held_out import score_record
 from seacage.studies._paper._claims import PaperClaim
-from seacage.studies._paper._level_one import LevelOneScore
 from seacage.studies._paper._shape_scores import ShapeScore
-from seacage.studies._paper._study import PaperStudy, paper_study
+from seacage.studies._paper._study import LevelOneScore, PaperStudy, paper_study
 from seacage.studies._paper._trainings import WayScore
 from seacage.studies._quality import quality_page
 from seacage.studies._sensor_scores import Errors, SensorScore

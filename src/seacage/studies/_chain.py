@@ -114,11 +114,6 @@ class Chain:
         given = self.given_field
         return FieldRecord.read(given / "truth" if given else self._field_folder / "truth")
 
-    @property
-    def twin_folder(self) -> Path:
-        """The twin trained on the campaign and on the field record's teaching days."""
-        return self.ensure_twin(self.recipe.training)
-
     def ensure_twin(self, training: Training) -> Path:
         """The folder of a twin that learned so from the campaign and the teaching days."""
 
@@ -147,7 +142,7 @@ class Chain:
     @property
     def stages(self) -> Stages:
         """Where what is made is kept."""
-        return Stages(folder=self.folder)
+        return Stages(folder=self.folder, workers=self.workers, progress=self.progress)
 
     @property
     def _hidden(self) -> campaigns.TruthParameters:
@@ -204,13 +199,7 @@ class Chain:
 
     def _run(self, stage: str, plan: campaigns.Plan) -> CampaignRecord:
         return self.stages.ensure_campaign(
-            stage,
-            self.cage,
-            plan,
-            method=self.recipe.method,
-            second_moment=True,
-            workers=self.workers,
-            progress=self.progress,
+            stage, self.cage, plan, method=self.recipe.method, second_moment=True
         )
 
     def _make_field(self, begun: Path) -> None:

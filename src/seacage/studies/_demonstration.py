@@ -49,22 +49,21 @@ def prepare_demonstration(
     whose later days are shown. Another buoy's record may drive the show instead: the twin stays
     the same, and the sensors beside that record are virtual too, and settled.
     """
-    cage, stages = Cage.named("ace"), Stages(folder=Path(folder))
-    how = {"workers": workers, "progress": progress or no_progress}
+    cage = Cage.named("ace")
+    stages = Stages(folder=Path(folder), workers=workers, progress=progress or no_progress)
     teaching, shown = split(read_demonstration_field(), teaching_days=TRAINING_DAYS)
-    twin_folder = _ensure_twin(stages, cage, teaching, **how)
+    twin_folder = _ensure_twin(stages, cage, teaching)
     if record is None:
         start = min(moment(sensor.time[0]) for sensor in shown.sensors.values())
         shown = replace(shown, buoy=shown.buoy.between(start, _LAST))
     else:
-        chain = Chain(folder=stages.folder, cage=cage, recipe=Recipe(seed=SEED), **how)
+        recipe, how = Recipe(seed=SEED), {"workers": workers, "progress": stages.progress}
+        chain = Chain(folder=stages.folder, cage=cage, recipe=recipe, **how)
         shown = chain.display_field(record)
     return Demonstration(cage=cage, twin_folder=twin_folder, buoy=shown.buoy, field=shown)
 
 
-def _ensure_twin(
-    stages: Stages, cage: Cage, teaching: FieldRecord, *, workers: int | None, progress: Progress
-) -> Path:
+def _ensure_twin(stages: Stages, cage: Cage, teaching: FieldRecord) -> Path:
     """The folder of the twin that learned, and that knows how far its shapes are off."""
     training = Training(days=float(TRAINING_DAYS), pause_s=86400.0 * TRAINING_DAYS, seed=SEED)
 
@@ -76,11 +75,9 @@ def _ensure_twin(
             method="simulate",
             second_moment=True,
             spin_up=SPIN_UP,
-            workers=workers,
-            progress=progress,
         )
-        twin = train(cage, campaign, teaching, training=training, progress=progress)
-        error = learned_discrepancy(twin, workers=workers, progress=progress)
+        twin = train(cage, campaign, teaching, training=training, progress=stages.progress)
+        error = learned_discrepancy(twin, workers=stages.workers, progress=stages.progress)
         replace(twin, discrepancy=error).write(begun / "twin")
 
     settings = {

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from seacage.campaigns import TrueShapes, TruthParameters, true_shapes
 from seacage.conventions import Origin, Progress
@@ -126,6 +126,15 @@ def score_paths(
             happened.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
             speed.append(float(np.hypot(*velocity)))
     return Reliability(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
+
+
+def without_drift(
+    difference: Float[np.ndarray, "case node 3"],  # between the positions of nodes [m]
+    # Nodes of the collar, whose mean displacement counts as the drift
+    collar: Int[np.ndarray, " spoke"],
+) -> Float[np.ndarray, "case node 3"]:
+    """Differences of two nets that are shifted so that their collars lie together [m]."""
+    return difference - difference[:, collar].mean(axis=1, keepdims=True)
 
 
 def _near(

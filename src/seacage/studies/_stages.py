@@ -12,7 +12,7 @@ from typing import Literal, TypeVar
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
-from seacage.conventions import Progress, RecordError
+from seacage.conventions import Progress, RecordError, no_progress
 from seacage.dynamics import PHYSICS, Law
 from seacage.records import CampaignRecord, read_campaign
 
@@ -32,6 +32,8 @@ class Stages:
     """
 
     folder: Path
+    workers: int | None = None  # processes for simulations; None for one per core
+    progress: Progress = no_progress  # called as (stage, done, total)
 
     def ensure(
         self,
@@ -73,8 +75,6 @@ class Stages:
         law: Law = "kristiansen-faltinsen",
         second_moment: bool = False,
         spin_up: float = 300.0,
-        workers: int | None,
-        progress: Progress,
     ) -> CampaignRecord:
         """A cage in the seas of a plan, kept on disk case by case.
 
@@ -89,9 +89,9 @@ class Stages:
                 method=method,
                 law=law,
                 second_moment=second_moment,
-                workers=workers,
+                workers=self.workers,
                 spin_up=spin_up,
-                progress=lambda _, done, total: progress(stage, done, total),
+                progress=lambda _, done, total: self.progress(stage, done, total),
             )
 
         settings = {

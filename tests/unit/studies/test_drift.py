@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from seacage.studies._drift import without_drift
+from seacage.studies._shape_discrepancy import without_drift
 
 
 def test_a_drift_goes_and_what_the_net_does_besides_stays():

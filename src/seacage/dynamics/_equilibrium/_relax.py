@@ -2,13 +2,13 @@
 
 from collections.abc import Callable
 from concurrent.futures import Executor
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.dynamics._kernel._balance import Balancing
-from seacage.dynamics._kernel._library import Relaxation, Relaxing, kernel
+from seacage.dynamics._kernel._library import Balancing, Relaxation, Relaxing, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 
@@ -36,22 +36,18 @@ def relax(
     assembly: Assembly, flow: SteadyFlow, state: Relaxing, relaxation: Relaxation, pool: Executor
 ) -> None:
     """Relax the open cases."""
-
-    def step(some: Int[np.ndarray, " some"]) -> Relaxing:
-        return kernel().relax(
-            assembly, flow.rows(some), state.rows(some), relaxation, rounds=STRETCH
-        )
-
+    move = partial(kernel().relax, assembly, relaxation=relaxation, rounds=STRETCH)
     for _ in range(STRETCHES):
-        advance(state, step, relaxation.tolerance, pool)
+        advance(flow, state, move, relaxation.tolerance, pool)
 
 
 State = TypeVar("State", Relaxing, Balancing)
 
 
 def advance(
+    flow: SteadyFlow,
     state: State,
-    step: Callable[[Int[np.ndarray, " some"]], State],
+    move: Callable[[SteadyFlow, State], State],
     tolerance: float,
     pool: Executor,
 ) -> None:
@@ -59,7 +55,7 @@ def advance(
     lanes = kernel().lanes
 
     def run(some: Int[np.ndarray, " some"]) -> None:
-        state.take(some, step(some))
+        state.take(some, move(flow.rows(some), state.rows(some)))
 
     cases = np.flatnonzero((state.residual > tolerance) & (state.residual < LOST))
     list(pool.map(run, (cases[i : i + lanes] for i in range(0, len(cases), lanes))))

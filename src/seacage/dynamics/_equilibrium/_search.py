@@ -2,14 +2,14 @@
 
 from concurrent.futures import Executor, ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium import _relax
-from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._kernel._library import kernel
+from seacage.dynamics._kernel._library import Balance, Balancing, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow
 
@@ -129,14 +129,9 @@ def _seek(
     assembly: Assembly, flow: SteadyFlow, state: Balancing, balance: Balance, pool: Executor
 ) -> None:
     """Newton's method on all problems."""
-
-    def step(some: Int[np.ndarray, " some"]) -> Balancing:
-        return kernel().balance(
-            assembly, flow.rows(some), state.rows(some), balance, iterations=STRETCH
-        )
-
+    move = partial(kernel().balance, assembly, balance=balance, iterations=STRETCH)
     for _ in range(0, MOST_ITERATIONS, STRETCH):
-        _relax.advance(state, step, AIM, pool)
+        _relax.advance(flow, state, move, AIM, pool)
 
 
 def _relax_the_rest(

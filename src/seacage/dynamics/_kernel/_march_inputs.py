@@ -15,13 +15,15 @@ from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStru
 from seacage.dynamics._parts._assembly import Assembly, Bars
 from seacage.dynamics._physics._loads import DYNAMIC
 from seacage.dynamics._physics._motion import NetLaw, bar_damping
-from seacage.dynamics._physics._node_waves import UNFELT, wave_reach
 from seacage.dynamics._physics._screens import CYLINDER, facing
 from seacage.ocean import Waves
 
 HELD = 1e20  # mass of a node that is held in its place [kg]
 # Least e^(−2kh) with which the bed changes a component where it is felt, in single precision
 NO_BED = 1e-12
+# Speed of a component that is not felt, over that of all at the surface, root mean square [-]
+FELT = 1e-4
+UNFELT = 1e9  # reach of a component that is felt nowhere: above all nodes [m]
 
 _SCREENS, _TWINES = range(2)
 
@@ -210,6 +212,21 @@ def _wave_tables(waves: Sequence[Waves]) -> dict[str, np.ndarray]:
 _SINGLE = ("number", "toward_x", "toward_y", "amplitude", "speed", "reach", "floor", "bounce")
 WAVE_KINDS: dict[str, Any] = dict.fromkeys(_SINGLE, np.float32)
 WAVE_KINDS |= dict.fromkeys(("turns", "turns_per_second"), np.float64)
+
+
+def wave_reach(waves: Waves) -> Float[np.ndarray, " wave"]:
+    """Height below which each component moves the water too little to be felt [m].
+
+    That is by ``FELT`` of the root-mean-square speed at the surface, in a trough four standard
+    deviations deep. Such components are left out of the motion there, and of its stretching.
+    """
+    speed = waves.amplitude * waves.intrinsic_frequency
+    least = FELT * math.sqrt(float(np.sum(speed**2)) / 2.0)
+    trough = 4.0 * math.sqrt(float(np.sum(waves.amplitude**2)) / 2.0)
+    felt = speed > least
+    reach = np.full_like(speed, UNFELT)
+    reach[felt] = np.log(least / speed[felt]) / waves.wavenumber[felt] - trough
+    return reach
 
 
 def _wave_table(waves: Waves, count: int) -> dict[str, np.ndarray]:

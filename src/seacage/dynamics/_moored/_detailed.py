@@ -9,8 +9,7 @@ from jaxtyping import Bool, Float, Int
 from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY, InputError
 from seacage.dynamics._moored._anchor_line import is_rope
-from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._moored._mooring import anchor_assembly, assemble
 from seacage.dynamics._parts._assembly import Assembly, Bars, tube_kept
 
 BoolPerPanel = Bool[np.ndarray, " panel"]

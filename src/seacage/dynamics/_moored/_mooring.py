@@ -8,6 +8,7 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import WATER_DENSITY, InputError
+from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._moored._anchor_line import (
     STEEL_DENSITY,
     LineShape,
@@ -16,7 +17,6 @@ from seacage.dynamics._moored._anchor_line import (
     resting_line,
     segments,
 )
-from seacage.dynamics._moored._pretension import assemble
 from seacage.dynamics._parts._assembly import (
     Assembly,
     Bars,
@@ -28,8 +28,25 @@ from seacage.dynamics._parts._assembly import (
     Springs,
     direction,
 )
+from seacage.dynamics._physics._flow import steady_flow
 
 ROPE_DRAG = 1.2  # cross-flow drag coefficient of a rope, a smooth cylinder's [-]
+
+
+@lru_cache(maxsize=16)
+def assemble(cage: Cage) -> Assembly:
+    """The cage put together, its bridles cut so that each bears the pretension at rest.
+
+    The collar gives to the bridles' pull by some decimetres. Its shape under that pull is found
+    with bridles so soft that they pull equally wherever it comes to lie.
+    """
+    designed, pretension = Assembly.of(cage), cage.bridles.pretension
+    still = steady_flow(designed, np.zeros((1, 2)), law="loland")
+    shape = designed.position
+    for _ in range(2):
+        soft = designed.strung(shape, pretension, softness=30.0)
+        shape = equilibria(soft, still).position[0]
+    return designed.strung(shape, pretension, offset=cage.bridles.length_offset)
 
 
 @lru_cache(maxsize=16)
@@ -94,14 +111,10 @@ def _anchor_lines(cage: Cage, shape: LineShape) -> _AnchorLines:
     length, stiffness = segments(parts)
     directions, corners = _directions(cage)
     count, each = len(directions), len(length)
-    along = shape.position[1:, 0]
-    position = cage.corner_position[corners][:, None] + np.concatenate(
-        [
-            along[None, :, None] * directions[:, None],
-            np.broadcast_to(shape.position[1:, 1][None, :, None], (count, each, 1)),
-        ],
-        axis=-1,
-    )
+    along, up = shape.position[1:].T
+    position = np.repeat(cage.corner_position[corners][:, None], each, axis=1)
+    position[..., :2] += along[:, None] * directions[:, None]
+    position[..., 2] += up
     own = cage.node_count + len(cage.corner_position) + np.arange(count * each).reshape(count, each)
     chain = np.column_stack([cage.node_count + corners, own])
     bars = Bars.alike(

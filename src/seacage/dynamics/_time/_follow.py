@@ -13,8 +13,7 @@ from seacage.dynamics._kernel._march import REFRESH
 from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._detailed import Damage
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
-from seacage.dynamics._time._segments import Build, Course, SegmentBatch
-from seacage.dynamics._time._weather import AbstractWeather
+from seacage.dynamics._time._segments import AbstractWeather, Build, Course, SegmentBatch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

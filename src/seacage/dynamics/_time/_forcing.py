@@ -126,10 +126,7 @@ def wakes(
     depth = assembly.panels.depth
     if not wake:
         return np.ones((len(ocean.current), len(depth)))
-    at_panels = np.stack(
-        [
-            np.column_stack([np.interp(depth, -ocean.level_z, case[:, axis]) for axis in (0, 1)])
-            for case in ocean.current
-        ]
+    at_panels = np.array(
+        [[np.interp(depth, -ocean.level_z, axis) for axis in case.T] for case in ocean.current]
     )
-    return wake_share(assembly, law, at_panels)
+    return wake_share(assembly, law, np.moveaxis(at_panels, 1, -1))

@@ -1,5 +1,6 @@
 """Some stretches of time on their way, and what they meet."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -19,7 +20,6 @@ from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._physics._wake import wake_in_sight
 from seacage.dynamics._time._forcing import morison_waves
-from seacage.dynamics._time._weather import AbstractWeather
 from seacage.ocean import MAX_CURRENT_SPEED, Waves
 
 PerStretch = Float[np.ndarray, " stretch"]
@@ -30,6 +30,29 @@ HOLD = 8  # time steps through which the water's load is held
 RAMP = 60.0  # over which the waves rise when a stretch begins [s]
 WAVES_EVERY = 60.0  # between two looks at how the sea state has changed [s]
 WAKE_EVERY = 30.0  # between two looks at what shelters what, and at the growth [s]
+
+
+class AbstractWeather(ABC):
+    """Current, waves and growth at one cage over time, in seconds from a time of its own."""
+
+    @property
+    @abstractmethod
+    def level_depth(self) -> tuple[float, ...]:
+        """Depths of the current's levels, from the surface down; the same for all stretches [m]."""
+
+    @abstractmethod
+    def current(self, second: float) -> Float[np.ndarray, "level 2"]:
+        """East and north at each level [m/s]."""
+
+    @abstractmethod
+    def waves(self, second: float) -> Waves:
+        """The waves for about a minute from then; their time 0 is then."""
+
+    @abstractmethod
+    def netting(
+        self, second: float, depth: Float[np.ndarray, " panel"]
+    ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
+        """Solidity added by growth at some depths, and the drag factor of what grew there [-]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +117,15 @@ class SegmentBatch:
                 level_z=-np.array(weathers[0].level_depth),
                 depth=build.cage.site.water_depth,
             ),
-            _steps(course, self._time_step),
+            Steps(
+                time_step=self._time_step,
+                each=course.steps,
+                hold=HOLD,
+                ramp=RAMP,
+                spin_up=course.spin_up * course.refreshes,
+                counted=course.samples * course.refreshes,
+                sample_every=0,
+            ),
             start,
         )
 
@@ -167,18 +198,6 @@ class SegmentBatch:
 def _due(since: float, every: float, step: float) -> bool:
     """Whether a look that comes at regular times comes in this step."""
     return since % every < step
-
-
-def _steps(course: Course, time_step: float) -> Steps:
-    return Steps(
-        time_step=time_step,
-        each=course.steps,
-        hold=HOLD,
-        ramp=RAMP,
-        spin_up=course.spin_up * course.refreshes,
-        counted=course.samples * course.refreshes,
-        sample_every=0,
-    )
 
 
 def _start(cage: Cage, assembly: Assembly, current: Stretch2) -> StretchNode3:

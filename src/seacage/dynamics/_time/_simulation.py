@@ -11,9 +11,8 @@ from seacage.conventions import Result
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._kernel._march import Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.dynamics._moored._choice import Mooring, moor
+from seacage.dynamics._moored._choice import Mooring, moor, part
 from seacage.dynamics._moored._mass_scaling import scale_mass
-from seacage.dynamics._moored._parted import part
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._motion import NetLaw

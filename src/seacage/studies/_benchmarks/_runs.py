@@ -19,22 +19,33 @@ ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_
 TIMES = ("fit_s", "predict_s", "tick_s")  # as named in answers and scores
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Run:
-    """One method's answer to one problem and seed, or why there is none."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunScore:
+    """Scores of one run against the truth without noise, in its unit where nothing else is said."""
 
     # Names, and the seed of the problem's sample
     problem: str
     method: str
     seed: int
-    # At the test points; None after an error
-    mean: Float[np.ndarray, " row"] | None = None
-    std: Float[np.ndarray, " row"] | None = None
+    rmse: float = np.nan
+    mnll: float = np.nan  # mean negative log likelihood [nat]
+    crps: float = np.nan
+    coverage: float = np.nan  # of the 95 % intervals [-]
     # Of the processor: to fit, to answer all test points, and to answer one [s]
     fit_s: float = np.nan
     predict_s: float = np.nan
     tick_s: float = np.nan
-    error: str | None = None  # message of the method that failed
+    error: str | None = None  # message of the method that failed; then all scores are NaN
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Run:
+    """One method's answer to one problem and seed, or why there is none."""
+
+    score: RunScore  # of which only names, times and error are known yet
+    # At the test points; None after an error
+    mean: Float[np.ndarray, " row"] | None = None
+    std: Float[np.ndarray, " row"] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -139,14 +150,16 @@ def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], 
 
 def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> Run:
     result: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
-    run = Run(problem=problem.name, method=method.name, seed=seed)
+    score = RunScore(problem=problem.name, method=method.name, seed=seed)
     if "error" in result:
-        return replace(run, error=str(result["error"])[:300])
+        return Run(score=replace(score, error=str(result["error"])[:300]))
     with np.load(out / job.name) as answer:
         mean, std = answer["mean"], answer["std"]
     if mean.shape != (problem.tests,) or not (np.isfinite(mean) & np.isfinite(std)).all():
-        return replace(run, error="the answer is not a finite number for each test point")
-    return replace(run, mean=mean, std=std, **{name: float(result[name]) for name in TIMES})
+        unusable = "the answer is not a finite number for each test point"
+        return Run(score=replace(score, error=unusable))
+    times = {name: float(result[name]) for name in TIMES}
+    return Run(score=replace(score, **times), mean=mean, std=std)
 
 
 def _sign(out: Path, job: Path) -> Path:

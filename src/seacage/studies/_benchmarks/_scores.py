@@ -6,30 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from jaxtyping import Float
 
-from seacage.studies._benchmarks._runs import TIMES, Run
+from seacage.studies._benchmarks._runs import TIMES, Run, RunScore
 from seacage.surrogates import coverage, crps, mnll, rmse
 
 # Share of the truth's standard deviation that a predicted one counts as at least. A likelihood does
 # not exist at zero, which some peers answer at their training points.
 NARROWEST = 1e-6
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunScore:
-    """Scores of one run against the truth without noise, in its unit where nothing else is said."""
-
-    problem: str
-    method: str
-    seed: int
-    rmse: float = np.nan
-    mnll: float = np.nan  # mean negative log likelihood [nat]
-    crps: float = np.nan
-    coverage: float = np.nan  # of the 95 % intervals [-]
-    # Of the processor [s]
-    fit_s: float = np.nan
-    predict_s: float = np.nan
-    tick_s: float = np.nan
-    error: str | None = None  # why there is no score; then all are NaN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,17 +40,15 @@ class Summary:
 
 def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
     """Score a run."""
-    score = RunScore(problem=run.problem, method=run.method, seed=run.seed, error=run.error)
     if run.mean is None or run.std is None:
-        return score
+        return run.score
     std = np.maximum(run.std, NARROWEST * float(np.std(truth)))
     return replace(
-        score,
+        run.score,
         rmse=rmse(truth, run.mean),
         mnll=mnll(truth, run.mean, std),
         crps=crps(truth, run.mean, std),
         coverage=coverage(truth, run.mean, std),
-        **{name: getattr(run, name) for name in TIMES},
     )
 
 

@@ -8,12 +8,11 @@ from seacage.conventions import InputError, Progress, no_progress
 from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer_methods
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmarks._report import page_values
-from seacage.studies._benchmarks._runs import Runs
-from seacage.studies._benchmarks._scores import RunScore, Summary, score_run, summary
+from seacage.studies._benchmarks._runs import Runs, RunScore
+from seacage.studies._benchmarks._scores import Summary, score_run, summary
 from seacage.studies._benchmarks._verdicts import verdicts
-from seacage.studies._claim import Claim
 from seacage.studies._page import write_report
-from seacage.studies._text import join_names
+from seacage.studies._text import Claim, join_names
 
 TUNING_SEEDS = range(5)  # settings may be chosen by these, so they decide no verdict
 SEEDS = range(10)
@@ -127,7 +126,7 @@ def _scores(
             seeds,
             on_done=lambda done, before=before: notify(problem.title, before + done, total),
         )
-        found += [score_run(run, truths[run.seed]) for run in made]
+        found += [score_run(run, truths[run.score.seed]) for run in made]
     return found
 
 

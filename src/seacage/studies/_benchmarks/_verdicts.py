@@ -5,8 +5,7 @@ from collections.abc import Mapping, Sequence
 from seacage.studies._benchmarks._methods import EMUKIT, HIGH_ONLY, OURS, SMT
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem, problem_named
 from seacage.studies._benchmarks._scores import Summary
-from seacage.studies._claim import Claim
-from seacage.studies._text import join_names, number, percent
+from seacage.studies._text import Claim, join_names, number, percent
 
 # Our mean RMSE over that of Emukit's NARGP, at most
 RATIOS = {"pedagogical": 1.0, "branin-3": 0.7, "park": 0.5, "borehole": 0.3}

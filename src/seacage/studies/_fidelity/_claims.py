@@ -4,13 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from seacage.studies._claim import Claim
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SensorGap
 from seacage.studies._fidelity._null_case import NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
 from seacage.studies._interval import Interval
-from seacage.studies._text import join_names, number, percent
+from seacage.studies._text import Claim, join_names, number, percent
 
 THOUSANDTH = {"m": "mm", "kN": "N"}  # units that a null case's errors are read in
 

@@ -1,17 +1,14 @@
 """How the gap between low fidelity and truth changes while the net grows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.cage import Cage
 from seacage.campaigns import Plan, TruthParameters
-from seacage.conventions import Progress, no_progress
-from seacage.dynamics import Law
-from seacage.records import CampaignRecord
-from seacage.studies._drift import without_drift
+from seacage.conventions import no_progress
 from seacage.studies._fidelity._windows import Windows
+from seacage.studies._shape_discrepancy import without_drift
 from seacage.studies._stages import Stages, count
 
 SPEEDS = (0.3, 0.5, 0.7)  # of the currents that the gap is settled in [m/s]
@@ -61,27 +58,21 @@ def fouling_gap(
     stages: Stages,
     *,
     begin: np.datetime64,  # of the record, from which growth is counted
-    workers: int | None,
-    progress: Progress,
 ) -> FoulingGap:
     """Settle both cages in the same currents at several growths, and sort the record by growth."""
     sensors = windows.sensors
     to = sensors.cage.site.current_to
     plan = Plan.grid(current_speed=SPEEDS, current_to=(to,), name="fouling")
-
-    def equilibria_of(cage: Cage, law: Law) -> CampaignRecord:
-        return stages.ensure_campaign(
-            "fouling", cage, plan, law=law, workers=workers, progress=no_progress
-        )
-
-    low = equilibria_of(sensors.cage, "kristiansen-faltinsen")
+    quiet = replace(stages, progress=no_progress)  # progress is of the growths
+    low = quiet.ensure_campaign("fouling", sensors.cage, plan)
     true = [
-        equilibria_of(hidden.true_cage(sensors.cage, growth), hidden.law)
-        for growth in count(GROWTHS, "fouling", progress)
+        quiet.ensure_campaign(
+            "fouling", hidden.true_cage(sensors.cage, growth), plan, law=hidden.law
+        )
+        for growth in count(GROWTHS, "fouling", stages.progress)
     ]
-    responses, of_low = (
-        [sensors.responses_of(one.node_position, one.bridle_tension) for one in records]
-        for records in (true, [low])
+    of_low, *responses = (
+        sensors.responses_of(one.node_position, one.bridle_tension) for one in (low, *true)
     )
     apart = [one.node_position - low.node_position for one in true]
     collar = sensors.cage.ring_nodes(0)
@@ -92,17 +83,17 @@ def fouling_gap(
         current_to=to,
         growth=np.array(GROWTHS),
         speed=np.array(SPEEDS),
-        gap=np.stack(responses) - of_low[0],
-        distance=np.stack([_mean_distance(one) for one in apart]),
-        distance_without_drift=np.stack(
-            [_mean_distance(without_drift(one, collar)) for one in apart]
-        ),
+        gap=np.stack(responses) - of_low,
+        distance=_mean_distance(apart),
+        distance_without_drift=_mean_distance([without_drift(one, collar) for one in apart]),
         met=_gaps_by_growth(windows, growth),
     )
 
 
-def _mean_distance(apart: Float[np.ndarray, "case node 3"]) -> Float[np.ndarray, " case"]:
-    return np.linalg.norm(apart, axis=-1).mean(axis=-1)
+def _mean_distance(
+    apart: list[Float[np.ndarray, "case node 3"]],
+) -> Float[np.ndarray, "growth case"]:
+    return np.linalg.norm(np.stack(apart), axis=-1).mean(axis=-1)
 
 
 def _gaps_by_growth(windows: Windows, growth: Float[np.ndarray, " window"]) -> tuple[MetGap, ...]:

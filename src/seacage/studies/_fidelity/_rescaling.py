@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.campaigns import Plan
-from seacage.conventions import Progress, Result
+from seacage.conventions import Result
 from seacage.studies._fidelity._windows import Sensors, Windows
 from seacage.studies._interval import Interval, by_day
 from seacage.studies._stages import Stages, count
@@ -105,9 +105,7 @@ def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
     return index % 2 == 0 if len(days) > 1 else np.arange(len(windows)) < len(windows) // 2
 
 
-def rescalings(
-    windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
-) -> Rescalings:
+def rescalings(windows: Windows, stages: Stages, *, seed: int) -> Rescalings:
     """Fit the best rescaling of each sensor on training days; score it on the others.
 
     The current's speed is multiplied, its direction turned, and the answer multiplied and
@@ -115,7 +113,7 @@ def rescalings(
     sensor's noise, so that a rescaling has every advantage. How an answer changes with the current
     comes from settled currents; what waves add stays as simulated.
     """
-    process, errors = _fit_settled(windows.sensors, stages, seed, workers, progress)
+    process, errors = _fit_settled(windows.sensors, stages, seed)
     settled, teach = _tabulate(process), teaching_days(windows)
     training, test = (
         Moving(windows=windows.rows(days), settled=settled) for days in (teach, ~teach)
@@ -124,7 +122,7 @@ def rescalings(
     first = np.stack([training.answers_at(*change) for change in coarse])
     names = windows.sensors.names
     found: list[Rescaling] = []
-    for column in count(range(len(names)), "rescaling", progress):
+    for column in count(range(len(names)), "rescaling", stages.progress):
         change = coarse[_least(first[..., column], training.windows.truth[:, column])]
         found.append(_score(training, test, column, _refine(training, column, change), seed))
     return Rescalings(
@@ -133,15 +131,13 @@ def rescalings(
 
 
 def _fit_settled(
-    sensors: Sensors, stages: Stages, seed: int, workers: int | None, progress: Progress
+    sensors: Sensors, stages: Stages, seed: int
 ) -> tuple[FittedGaussianProcess, Float[np.ndarray, " sensor"]]:
     """Answers to currents alone, and how far they are off at a current left out."""
     plan = Plan.sample(
         seed, _CURRENTS, current_speed=(0.0, _FASTEST), hs=(0.0, 0.0), name="currents"
     )
-    record = stages.ensure_campaign(
-        "currents", sensors.cage, plan, workers=workers, progress=progress
-    )
+    record = stages.ensure_campaign("currents", sensors.cage, plan)
     known = record.result != Result.DIVERGED
     velocity = np.array([sea.current_velocity for sea in record.seas])[known]
     answers = sensors.responses_of(record.node_position[known], record.bridle_tension[known])

@@ -10,7 +10,6 @@ from seacage.campaigns import TruthParameters
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.records import FieldRecord
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._claim import Claim
 from seacage.studies._fidelity._claims import claims
 from seacage.studies._fidelity._fouling import FoulingGap, fouling_gap
 from seacage.studies._fidelity._gap import SensorGap, sensor_gaps
@@ -19,6 +18,7 @@ from seacage.studies._fidelity._report import page_values
 from seacage.studies._fidelity._rescaling import Rescaling, rescalings
 from seacage.studies._fidelity._windows import Sensors, Windows, answer_windows, choose_windows
 from seacage.studies._page import write_report
+from seacage.studies._text import Claim
 
 _DAYS = 48.0  # of the field that is made where none is given
 _POINTS = 300  # readings that each sensor teaches with at most, as a twin's do
@@ -91,14 +91,12 @@ def fidelity_study(
     record, stages = chain.field, chain.stages
     _check(record, hidden, windows)
     chosen = choose_windows(Sensors.of(cage), record, chain.truth, count=windows, seed=seed)
-    whole = answer_windows(chosen, stages, seed=seed, workers=workers, progress=report)
+    whole = answer_windows(chosen, stages, seed=seed)
     survey = whole.rows(whole.surveyed)
     gaps = sensor_gaps(survey, seed=seed)
-    scaled = rescalings(survey, stages, seed=seed, workers=workers, progress=report)
+    scaled = rescalings(survey, stages, seed=seed)
     null = null_case(whole, record, points=_POINTS, seed=seed, progress=report)
-    fouling = fouling_gap(
-        survey, hidden, stages, begin=record.buoy.time[0], workers=workers, progress=report
-    )
+    fouling = fouling_gap(survey, hidden, stages, begin=record.buoy.time[0])
     found = claims(gaps, scaled.sensors, null, fouling)
     scores = {
         "recipe": _recipe(record, whole, lost=len(chosen) - len(whole)),

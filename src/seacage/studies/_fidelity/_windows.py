@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float, Shaped
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan
-from seacage.conventions import GRAVITY, Flag, InputError, Progress, Result, Rows, compass
+from seacage.conventions import GRAVITY, Flag, InputError, Result, Rows, compass
 from seacage.dynamics import rest_shape
 from seacage.ocean import SeaState
 from seacage.records import Clock, FieldRecord, Record, aligned, moment
@@ -194,23 +194,15 @@ def buoy_water(buoy: Record, end: Shaped[np.ndarray, " window"]) -> Metocean:
     return Metocean.from_table(means)
 
 
-def answer_windows(
-    windows: Windows, stages: Stages, *, seed: int, workers: int | None, progress: Progress
-) -> Windows:
+def answer_windows(windows: Windows, stages: Stages, *, seed: int) -> Windows:
     """Windows with the low fidelity's answers; those in which it was lost are left out.
 
     Simulated in time where there are waves, settled where there are none.
     """
     seas = windows.seas()
     plan = Plan.listed(seas, duration=MEAN_S, seed=seed, name="windows")
-    record = stages.ensure_campaign(
-        "windows",
-        windows.sensors.cage,
-        plan,
-        method="simulate" if windows.waves else "settle",
-        workers=workers,
-        progress=progress,
-    )
+    method = "simulate" if windows.waves else "settle"
+    record = stages.ensure_campaign("windows", windows.sensors.cage, plan, method=method)
     low = windows.sensors.responses_of(record.node_position, record.bridle_tension)
     return replace(windows, low=low).rows(record.result != Result.DIVERGED)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.studies._drift import without_drift
+from seacage.studies._shape_discrepancy import without_drift
 from seacage.surrogates import Prediction, coverage, crps
 
 

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, no_progress
-from seacage.records import FieldRecord, read_campaign
+from seacage.records import CampaignRecord, FieldRecord, read_campaign
 from seacage.studies._chain import Chain, Recipe
 from seacage.studies._page import write_report
 from seacage.studies._paper._claims import PaperClaim, paper_claims
-from seacage.studies._paper._level_one import LevelOneScore, score_level_one
 from seacage.studies._paper._report import page_values
 from seacage.studies._paper._sensor_baselines import BaselineScore, score_sensor_baselines
 from seacage.studies._paper._shape_models import shape_models
@@ -23,7 +23,18 @@ from seacage.studies._paper._wave_loads import WaveLoads, wave_loads
 from seacage.studies._sensor_scores import SensorScore
 from seacage.studies._split import split
 from seacage.studies._text import join_names
-from seacage.twin import TrainingWindow
+from seacage.twin import TrainingWindow, Twin
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class LevelOneScore:
+    """Level 1 against simulations that it has not seen."""
+
+    cases: int
+    # Mean absolute error and mean tension of each bridle [N]
+    bridle_names: tuple[str, ...]
+    bridle_mae: Float[np.ndarray, " line"]
+    bridle_mean: Float[np.ndarray, " line"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -150,6 +161,19 @@ def study_chain(
         claims=claims,
         baselines=baselines,
         loads=loads,
+    )
+
+
+def score_level_one(twin: Twin, held_out: CampaignRecord) -> LevelOneScore:
+    """Score the tensions of level 1 on simulations that it has not seen."""
+    seas = [sea for sea, good in zip(held_out.seas, held_out.converged, strict=True) if good]
+    tension = held_out.bridle_tension[held_out.converged]
+    answer = twin.predict(seas)
+    return LevelOneScore(
+        cases=len(seas),
+        bridle_names=twin.bridle_names,
+        bridle_mae=np.mean(np.abs(answer.bridle_low - tension), axis=0),
+        bridle_mean=np.mean(tension, axis=0),
     )
 
 

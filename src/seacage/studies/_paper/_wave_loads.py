@@ -235,6 +235,4 @@ def _campaign(chain: Chain, cases: int, given: Path | None) -> CampaignRecord:
         Plan.named("loads", SEED, cases, duration=900.0),
         method="simulate",
         spin_up=200.0,
-        workers=chain.workers,
-        progress=chain.progress,
     )

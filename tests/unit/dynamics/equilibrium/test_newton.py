@@ -8,10 +8,8 @@ import pytest
 from benchmarks._newton import dense, hooke, nearer, tangent
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, rest_shape
-from seacage.dynamics._kernel._balance import Balance, Balancing
-from seacage.dynamics._kernel._library import kernel
-from seacage.dynamics._moored._mooring import anchor_assembly
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._kernel._library import Balance, Balancing, kernel
+from seacage.dynamics._moored._mooring import anchor_assembly, assemble
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import nodal_force
 

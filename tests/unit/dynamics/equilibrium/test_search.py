@@ -8,7 +8,7 @@ from seacage.conventions import InputError, Result
 from seacage.dynamics import settle
 from seacage.dynamics._equilibrium import _search
 from seacage.dynamics._equilibrium._search import AIM, APART, TOLERANCE, _choose
-from seacage.dynamics._kernel._balance import Balancing
+from seacage.dynamics._kernel._library import Balancing
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.ocean import SeaState
 

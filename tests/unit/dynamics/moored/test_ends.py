@@ -6,9 +6,8 @@ import pytest
 from seacage.cage import Cage
 from seacage.conventions import Result
 from seacage.dynamics import settle, simulate
-from seacage.dynamics._moored._choice import moor
+from seacage.dynamics._moored._choice import moor, part
 from seacage.dynamics._moored._ends import mooring_result
-from seacage.dynamics._moored._parted import part
 from seacage.ocean import SeaState
 
 SMALL = Cage.named("ace").altered(mesh={"spokes": 12})

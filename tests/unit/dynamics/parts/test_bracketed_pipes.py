@@ -5,8 +5,7 @@ import pytest
 
 from seacage.cage import Cage, Collar
 from seacage.conventions import InputError
-from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._parts._bracketed_pipes import bracket_stiffness
+from seacage.dynamics._parts._assembly import Assembly, bracket_stiffness
 
 ACE = Cage.named("ace")
 COLLAR = ACE.collar

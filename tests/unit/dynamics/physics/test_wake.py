@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.dynamics._moored._pretension import assemble
+from seacage.dynamics._moored._mooring import assemble
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._wake import wake_in_sight, wake_share
 

@@ -11,7 +11,7 @@ from seacage.conventions import InputError
 from seacage.service._cli._app import app
 from seacage.service._cli._study import _seeds
 from seacage.studies import BenchmarkStudy
-from seacage.studies._claim import Claim
+from seacage.studies._text import Claim
 
 
 @pytest.fixture

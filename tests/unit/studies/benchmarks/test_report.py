@@ -11,8 +11,8 @@ from seacage.studies._benchmarks import _study
 from seacage.studies._benchmarks._methods import HIGH_ONLY, OURS, own_methods
 from seacage.studies._benchmarks._problems import problem_named
 from seacage.studies._benchmarks._report import page_values
-from seacage.studies._benchmarks._runs import Runs
-from seacage.studies._benchmarks._scores import RunScore, summary
+from seacage.studies._benchmarks._runs import Runs, RunScore
+from seacage.studies._benchmarks._scores import summary
 from seacage.studies._benchmarks._study import _read_lock, _split_seeds
 from seacage.studies._benchmarks._verdicts import verdicts
 from seacage.studies._page import render

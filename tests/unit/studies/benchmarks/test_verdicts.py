@@ -3,7 +3,8 @@
 import pytest
 
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS
-from seacage.studies._benchmarks._scores import RunScore, summary
+from seacage.studies._benchmarks._runs import RunScore
+from seacage.studies._benchmarks._scores import summary
 from seacage.studies._benchmarks._verdicts import best_rival, verdicts
 
 NAMES = [problem.name for problem in (*PROBLEMS, CAGE_SIZE)]

@@ -37,9 +37,8 @@ def found(windows):
     def check_stage(stage, done, total):
         assert stage == "rescaling"
 
-    return rescalings(
-        windows, Stages(folder=Path("unused")), seed=0, workers=1, progress=check_stage
-    ).sensors
+    stages = Stages(folder=Path("unused"), progress=check_stage)
+    return rescalings(windows, stages, seed=0).sensors
 
 
 def changed(windows, *, factor, turn, gain, offset):

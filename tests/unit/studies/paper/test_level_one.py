@@ -7,7 +7,7 @@ import numpy as np
 
 from seacage.ocean import SeaState
 from seacage.records import CampaignRecord
-from seacage.studies._paper._level_one import score_level_one
+from seacage.studies._paper._study import score_level_one
 from seacage.twin import Twin
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from node_waves import node_waves
-from seacage.dynamics._physics._node_waves import FELT, UNFELT, wave_reach
+from seacage.dynamics._kernel._march_inputs import FELT, UNFELT, wave_reach
 from seacage.ocean import SeaState, Waves, regular_wave, sample_waves, surface_elevation
 
 SEA = SeaState(current_speed=0.0, current_to=0.0, hs=1.0, tp=5.0, wave_from=270.0)
