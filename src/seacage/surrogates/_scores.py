@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
@@ -35,14 +36,13 @@ def crps(truth: PerN, mean: PerN, std: PerN) -> float:
 
     Source: Gneiting & Raftery (2007), eq. (21).
     """
-    from scipy.special import ndtr
-
     error = _error(truth, mean)
     _check_std(error, std, smallest=0.0)
     known = np.where(std > 0.0, std, 1.0)
     z = error / known
     density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi)
-    score = known * (z * (2.0 * ndtr(z) - 1.0) + 2.0 * density - 1.0 / math.sqrt(math.pi))
+    below = scipy.special.ndtr(z)
+    score = known * (z * (2.0 * below - 1.0) + 2.0 * density - 1.0 / math.sqrt(math.pi))
     return float(np.mean(np.where(std > 0.0, score, np.abs(error))))
 
 
@@ -52,12 +52,10 @@ def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> floa
     ``truth``, ``mean``, ``std``: what happened, and what was predicted.
     ``level``: nominal share, between 0 and 1.
     """
-    from scipy.special import ndtri
-
     error = _error(truth, mean)
     _check_std(error, std, smallest=0.0)
     check_level(level)
-    return float(np.mean(np.abs(error) <= ndtri(0.5 + 0.5 * level) * std))
+    return float(np.mean(np.abs(error) <= scipy.special.ndtri(0.5 + 0.5 * level) * std))
 
 
 def mnll(truth: PerN, mean: PerN, std: PerN) -> float:

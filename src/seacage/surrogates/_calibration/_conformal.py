@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
@@ -36,8 +37,6 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     Source: Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the
     mean of a normal sample of unknown spread.
     """
-    from scipy.special import ndtri, stdtrit
-
     check_level(level)
     scores = np.asarray(score, dtype=np.float64)
     if len(scores) == 0 or not np.isfinite(scores).all() or np.any(scores < 0.0):
@@ -51,7 +50,8 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
         )
     rank = min(1.0, math.ceil((len(scores) + 1) * level) / len(scores))
     tail = 0.5 + 0.5 * level
-    normal, student = float(ndtri(tail)), float(stdtrit(independent - 1.0, tail))
+    normal = float(scipy.special.ndtri(tail))
+    student = float(scipy.special.stdtrit(independent - 1.0, tail))
     return float(np.quantile(scores, rank, method="higher")) / normal * student / normal
 
 
@@ -67,8 +67,6 @@ def variance_components(
 
     Source: McCullagh & Nelder (1989), chapter 8; Lawson & Hanson (1974) for the signs.
     """
-    from scipy.optimize import nnls
-
     size = float(np.mean(np.abs(square)))
     mean = np.mean(terms, axis=0)
     share = np.divide(size, mean, out=np.zeros_like(mean), where=mean > 0.0) / len(mean)
@@ -76,7 +74,8 @@ def variance_components(
         return share
     for _ in range(ROUNDS):
         variance = np.maximum(terms @ share, LEAST * size)
-        share, _ = nnls(terms / variance[:, None], np.minimum(square / variance, FAR))
+        held = np.minimum(square / variance, FAR)
+        share, _ = scipy.optimize.nnls(terms / variance[:, None], held)
     return share
 
 
@@ -124,9 +123,7 @@ class AdaptiveConformal:
         ``counts``: which of them are known to step the factor; None for all.
         ``start``: the first factor.
         """
-        from scipy.special import ndtri
-
-        edge = float(ndtri(0.5 + 0.5 * self.level))
+        edge = float(scipy.special.ndtri(0.5 + 0.5 * self.level))
         known = np.ones(len(score), dtype=bool) if counts is None else counts
         factor, given = start, np.empty(len(score))
         for row, (one, counted) in enumerate(zip(score.tolist(), known.tolist(), strict=True)):

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float
 
 from seacage.conventions import InputError
@@ -123,14 +124,12 @@ def _widening(
     1.96 standard deviations. The level of the quantile is that of conformal prediction, for as
     many cases. A line whose loads never vary has 1.
     """
-    from scipy.special import ndtri
-
     left_out = process.leave_groups_out(case)
     count = len(np.unique(case))
     level = min(1.0, HELD * (1.0 + 1.0 / count))
     known = left_out.std > 0.0
     deviate = np.where(known, np.abs(table - left_out.mean), 0.0) / np.where(known, left_out.std, 1)
-    widening = np.quantile(deviate, level, axis=0) / ndtri(0.5 + 0.5 * HELD)
+    widening = np.quantile(deviate, level, axis=0) / scipy.special.ndtri(0.5 + 0.5 * HELD)
     return np.where(widening > 0.0, widening, 1.0)
 
 
