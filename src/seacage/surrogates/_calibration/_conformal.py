@@ -8,7 +8,7 @@ import scipy
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._scores import check_level
+from seacage.surrogates._prediction import interval_ends
 
 Series = Float[np.ndarray, " n"]
 FAR = 16.0  # a squared error counts as at most so many variances, lest one reading rule the search
@@ -37,7 +37,7 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     Source: Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the
     mean of a normal sample of unknown spread.
     """
-    check_level(level)
+    _, tail = interval_ends(level)
     scores = np.asarray(score, dtype=np.float64)
     if len(scores) == 0 or not np.isfinite(scores).all() or np.any(scores < 0.0):
         raise InputError(
@@ -49,7 +49,6 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
             "size. Keep more aside."
         )
     rank = min(1.0, math.ceil((len(scores) + 1) * level) / len(scores))
-    tail = 0.5 + 0.5 * level
     normal = float(scipy.special.ndtri(tail))
     student = float(scipy.special.stdtrit(independent - 1.0, tail))
     return float(np.quantile(scores, rank, method="higher")) / normal * student / normal
@@ -102,7 +101,7 @@ class AdaptiveConformal:
     cap: float = 4.0
 
     def __post_init__(self) -> None:
-        check_level(self.level)
+        interval_ends(self.level)  # refuses a level that is no share
         if not (0.0 < self.rate < 1.0 and 0.0 < self.floor <= 1.0 <= self.cap < math.inf):
             raise InputError(
                 f"AdaptiveConformal: rate = {self.rate:g} must lie between 0 and 1, and 1 between "
@@ -123,7 +122,7 @@ class AdaptiveConformal:
         ``counts``: which of them are known to step the factor; None for all.
         ``start``: the first factor.
         """
-        edge = float(scipy.special.ndtri(0.5 + 0.5 * self.level))
+        edge = float(scipy.special.ndtri(interval_ends(self.level)[1]))
         known = np.ones(len(score), dtype=bool) if counts is None else counts
         factor, given = start, np.empty(len(score))
         for row, (one, counted) in enumerate(zip(score.tolist(), known.tolist(), strict=True)):
