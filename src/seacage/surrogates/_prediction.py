@@ -32,7 +32,7 @@ class Prediction(Rows):
 def interval_ends(level: float) -> tuple[float, float]:
     """Probabilities of the bounds that hold a share between them, refused where it is none."""
     if not 0.0 < level < 1.0:
-        raise InputError(f"interval: level = {level:g} is no share. Give e.g. 0.95.")
+        raise InputError(f"level = {level:g} is not between 0 and 1. Give 0.95 for 95 %.")
     return 0.5 - level / 2.0, 0.5 + level / 2.0
 
 

@@ -3,9 +3,11 @@
 import math
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError
+from seacage.surrogates._prediction import interval_ends
 
 PerN = Float[np.ndarray, "*n"]
 
@@ -35,14 +37,13 @@ def crps(truth: PerN, mean: PerN, std: PerN) -> float:
 
     Source: Gneiting & Raftery (2007), eq. (21).
     """
-    from scipy.special import ndtr
-
     error = _error(truth, mean)
     _check_std(error, std, smallest=0.0)
     known = np.where(std > 0.0, std, 1.0)
     z = error / known
     density = np.exp(-0.5 * z**2) / math.sqrt(2.0 * math.pi)
-    score = known * (z * (2.0 * ndtr(z) - 1.0) + 2.0 * density - 1.0 / math.sqrt(math.pi))
+    below = scipy.special.ndtr(z)
+    score = known * (z * (2.0 * below - 1.0) + 2.0 * density - 1.0 / math.sqrt(math.pi))
     return float(np.mean(np.where(std > 0.0, score, np.abs(error))))
 
 
@@ -52,12 +53,9 @@ def coverage(truth: PerN, mean: PerN, std: PerN, *, level: float = 0.95) -> floa
     ``truth``, ``mean``, ``std``: what happened, and what was predicted.
     ``level``: nominal share, between 0 and 1.
     """
-    from scipy.special import ndtri
-
     error = _error(truth, mean)
     _check_std(error, std, smallest=0.0)
-    check_level(level)
-    return float(np.mean(np.abs(error) <= ndtri(0.5 + 0.5 * level) * std))
+    return float(np.mean(np.abs(error) <= scipy.special.ndtri(interval_ends(level)[1]) * std))
 
 
 def mnll(truth: PerN, mean: PerN, std: PerN) -> float:
@@ -142,7 +140,7 @@ def block_bootstrap(
     Source: Politis & Romano (1992), circular block resampling.
     """
     _error(difference, np.zeros_like(difference))
-    check_level(level)
+    ends = interval_ends(level)
     ticks = len(difference)
     if not 1 <= block <= ticks:
         raise InputError(
@@ -158,7 +156,7 @@ def block_bootstrap(
     starts = np.random.default_rng(seed).integers(ticks, size=(draws, blocks))
     lengths = np.array([block] * (blocks - 1) + [rest])
     means = np.sum(total[starts + lengths] - total[starts], axis=1) / ticks
-    lower, upper = np.quantile(means, [0.5 - 0.5 * level, 0.5 + 0.5 * level])
+    lower, upper = np.quantile(means, ends)
     return float(np.mean(difference)), float(lower), float(upper)
 
 
@@ -185,9 +183,3 @@ def _check_std(error: PerN, std: PerN, *, smallest: float) -> None:
             f"score: the standard deviation must have the shape {error.shape} of the error and "
             f"be {bound} everywhere; got shape {np.shape(std)}, least {np.min(std):g}."
         )
-
-
-def check_level(level: float) -> None:
-    """Refuse a level of intervals that is no share."""
-    if not 0.0 < level < 1.0:
-        raise InputError(f"level = {level:g} is not between 0 and 1. Give 0.95 for 95 %.")

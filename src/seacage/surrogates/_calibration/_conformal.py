@@ -4,10 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
-from seacage.surrogates._scores import check_level
+from seacage.surrogates._prediction import interval_ends
 
 Series = Float[np.ndarray, " n"]
 FAR = 16.0  # a squared error counts as at most so many variances, lest one reading rule the search
@@ -36,9 +37,7 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     Source: Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the
     mean of a normal sample of unknown spread.
     """
-    from scipy.special import ndtri, stdtrit
-
-    check_level(level)
+    _, tail = interval_ends(level)
     scores = np.asarray(score, dtype=np.float64)
     if len(scores) == 0 or not np.isfinite(scores).all() or np.any(scores < 0.0):
         raise InputError(
@@ -50,8 +49,8 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
             "size. Keep more aside."
         )
     rank = min(1.0, math.ceil((len(scores) + 1) * level) / len(scores))
-    tail = 0.5 + 0.5 * level
-    normal, student = float(ndtri(tail)), float(stdtrit(independent - 1.0, tail))
+    normal = float(scipy.special.ndtri(tail))
+    student = float(scipy.special.stdtrit(independent - 1.0, tail))
     return float(np.quantile(scores, rank, method="higher")) / normal * student / normal
 
 
@@ -67,8 +66,6 @@ def variance_components(
 
     Source: McCullagh & Nelder (1989), chapter 8; Lawson & Hanson (1974) for the signs.
     """
-    from scipy.optimize import nnls
-
     size = float(np.mean(np.abs(square)))
     mean = np.mean(terms, axis=0)
     share = np.divide(size, mean, out=np.zeros_like(mean), where=mean > 0.0) / len(mean)
@@ -76,7 +73,8 @@ def variance_components(
         return share
     for _ in range(ROUNDS):
         variance = np.maximum(terms @ share, LEAST * size)
-        share, _ = nnls(terms / variance[:, None], np.minimum(square / variance, FAR))
+        held = np.minimum(square / variance, FAR)
+        share, _ = scipy.optimize.nnls(terms / variance[:, None], held)
     return share
 
 
@@ -103,7 +101,7 @@ class AdaptiveConformal:
     cap: float = 4.0
 
     def __post_init__(self) -> None:
-        check_level(self.level)
+        interval_ends(self.level)  # refuses a level that is no share
         if not (0.0 < self.rate < 1.0 and 0.0 < self.floor <= 1.0 <= self.cap < math.inf):
             raise InputError(
                 f"AdaptiveConformal: rate = {self.rate:g} must lie between 0 and 1, and 1 between "
@@ -124,9 +122,7 @@ class AdaptiveConformal:
         ``counts``: which of them are known to step the factor; None for all.
         ``start``: the first factor.
         """
-        from scipy.special import ndtri
-
-        edge = float(ndtri(0.5 + 0.5 * self.level))
+        edge = float(scipy.special.ndtri(interval_ends(self.level)[1]))
         known = np.ones(len(score), dtype=bool) if counts is None else counts
         factor, given = start, np.empty(len(score))
         for row, (one, counted) in enumerate(zip(score.tolist(), known.tolist(), strict=True)):

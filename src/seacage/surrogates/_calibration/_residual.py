@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float
 from numpy.typing import ArrayLike
 
@@ -203,13 +204,12 @@ class _Filtered(NamedTuple):
 
 def _search(fitted: FittedResidual, centre: Sizes, spread: Sizes) -> FittedResidual:
     """The most probable sizes and memory, the weights given."""
-    from scipy.optimize import minimize
 
     def with_sizes(offset: Sizes) -> FittedResidual:
         return replace(fitted, **_sizes(centre + spread * offset))
 
     now = np.log([fitted.sd, fitted.memory_s, fitted.noise_sd])
-    end = minimize(
+    end = scipy.optimize.minimize(
         lambda offset: 0.5 * float(offset @ offset) - with_sizes(offset).log_likelihood,
         (now - centre) / spread,
         method="L-BFGS-B",

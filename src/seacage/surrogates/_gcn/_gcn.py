@@ -178,7 +178,11 @@ class GCN:
         return weight / np.mean(weight)
 
     def _first(self, features: int, target: CaseNode3, seed: int) -> dict[str, np.ndarray]:
-        modes = _leading_modes(target)
+        # The principal components, each as large as it is in a typical case
+        flat = target.reshape(len(target), -1)
+        components, _ = all_modes(flat)
+        size = np.sqrt(np.mean(components.encode(flat) ** 2, axis=0))
+        modes = (components.direction * size[:, None])[:MODES]
         shapes = parameter_shapes(
             self.kind,
             features=features,
@@ -291,13 +295,6 @@ def _units(shape: CaseNode3, kind: Kind) -> tuple[Float[np.ndarray, "node 3"], f
         centre = np.tile(centre.mean(axis=0), (len(centre), 1))
     # A net that never moves has no spread; any unit will do.
     return centre, float(np.std(shape - centre)) or 1.0
-
-
-def _leading_modes(target: CaseNode3) -> Float[np.ndarray, "mode _"]:
-    """Principal components, each as large as it is in a typical case."""
-    modes, _ = all_modes(target.reshape(len(target), -1))
-    score = modes.encode(target.reshape(len(target), -1))
-    return (modes.direction * np.sqrt(np.mean(score**2, axis=0))[:, None])[:MODES]
 
 
 def _deep_weight(graph: Graph) -> Float[np.ndarray, " node"]:

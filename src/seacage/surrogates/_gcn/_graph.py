@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError
@@ -77,9 +78,7 @@ class Graph:
 
         A net has few edges per node, and a full matrix is mostly zeros.
         """
-        from scipy.sparse import csr_array
-
-        sparse = csr_array(self.propagation())
+        sparse = scipy.sparse.csr_array(self.propagation())
 
         def propagate(signal: Float[np.ndarray, "row node channel"]) -> np.ndarray:
             rows, nodes, channels = signal.shape

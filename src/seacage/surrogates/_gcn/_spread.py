@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
 
 from seacage.conventions import ModelError
@@ -117,9 +118,7 @@ class Spread:
 
 
 def _distances(x: RowFeature, cases: CaseFeature) -> Float[np.ndarray, "row case"]:
-    from scipy.spatial.distance import cdist
-
-    return cdist(x, cases)
+    return scipy.spatial.distance.cdist(x, cases)
 
 
 def _nearest_mean(

@@ -93,12 +93,10 @@ def _scale(mode: Mode) -> Float[np.ndarray, "parameter parameter"]:
 
 def _loss_within_bounds(evidence: Evidence, log_parameters: Parameters) -> tuple[float, Parameters]:
     """The loss, the likelihood held at its value on the bounds beyond them."""
-    from scipy.linalg import LinAlgError
-
     held = np.clip(log_parameters, *evidence.bounds().T)
     try:
         value, gradient = evidence.loss(held)
-    except LinAlgError:
+    except np.linalg.LinAlgError:
         return math.inf, np.zeros_like(held)
     prior = evidence.prior
     offset, held_offset = (log_parameters - prior.mean) / prior.sd, (held - prior.mean) / prior.sd

@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any, Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float
 
 from seacage.conventions import InputError
@@ -30,22 +31,19 @@ class Cholesky:
 
         Raises LinAlgError: it is not positive definite, even with the largest jitter.
         """
-        from scipy.linalg import LinAlgError
-
         for jitter in JITTERS:
             diagonal = np.diag(covariance) * (1.0 + jitter) + noise
             try:
                 return cls(lower=_lower(covariance, diagonal))
-            except LinAlgError:
+            except np.linalg.LinAlgError:
                 continue
-        raise LinAlgError("the covariance is not positive definite")
+        raise np.linalg.LinAlgError("the covariance is not positive definite")
 
     def solve(self, y: NOutput) -> NOutput:
         """Inverse times outputs."""
-        from scipy.linalg import cho_solve
-
+        solved = scipy.linalg.cho_solve((self.lower, True), y, check_finite=False)
         # In C order, as they come back from a file: the same rounding in every prediction.
-        return np.ascontiguousarray(cho_solve((self.lower, True), y, check_finite=False))
+        return np.ascontiguousarray(solved)
 
     def observations(self, weights: NOutput) -> NOutput:
         """Outputs whose inverse is the weights."""
@@ -60,9 +58,7 @@ class Cholesky:
 
     def inverse(self) -> NN:
         """Of the covariance with noise."""
-        from scipy.linalg import get_lapack_funcs
-
-        (potri,) = get_lapack_funcs(("potri",), (self.lower,))
+        (potri,) = scipy.linalg.get_lapack_funcs(("potri",), (self.lower,))
         half = np.tril(potri(self.lower, lower=True)[0])
         return half + np.tril(half, -1).T
 
@@ -77,9 +73,7 @@ class Cholesky:
 
         Raises LinAlgError: a new case repeats an old one more closely than its noise tells apart.
         """
-        from scipy.linalg import solve_triangular
-
-        side = solve_triangular(self.lower, cross.T, lower=True, check_finite=False).T
+        side = scipy.linalg.solve_triangular(self.lower, cross.T, lower=True, check_finite=False).T
         left = np.diag(corner) * (1.0 + JITTERS[0]) + noise - np.sum(side**2, axis=1)
         old, new = len(self.lower), len(corner)
         lower = np.zeros((old + new, old + new), order="F")
@@ -113,10 +107,8 @@ class Spectrum:
     @classmethod
     def of(cls, covariance: NN, noise: Float[np.ndarray, " output"]) -> Self:
         """Decompose the covariance."""
-        from scipy.linalg import eigh
-
         jitter = JITTERS[0] * float(np.diag(covariance).max())
-        value, basis = eigh(covariance, check_finite=False)
+        value, basis = scipy.linalg.eigh(covariance, check_finite=False)
         return cls(basis=basis, value=np.maximum(value, 0.0) + jitter, noise=noise)
 
     @property
@@ -160,17 +152,13 @@ class Spectrum:
 
 
 def _lower(covariance: NN, diagonal: PerN) -> NN:
-    from scipy.linalg import cholesky
-
     whole = covariance.copy()
     whole[np.diag_indices_from(whole)] = diagonal
-    return cholesky(whole, lower=True, overwrite_a=True, check_finite=False)
+    return scipy.linalg.cholesky(whole, lower=True, overwrite_a=True, check_finite=False)
 
 
 @cache
 def _trtrs(precision: str) -> Callable[..., tuple[np.ndarray, int]]:
     """LAPACK's solution of triangular systems, in double or single precision."""
-    from scipy.linalg import get_lapack_funcs
-
-    (trtrs,) = get_lapack_funcs(("trtrs",), dtype=precision)
+    (trtrs,) = scipy.linalg.get_lapack_funcs(("trtrs",), dtype=precision)
     return trtrs

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float
 
 from seacage.conventions import Rows
@@ -199,10 +200,8 @@ def _noisier(mode: Mode) -> PerParameter:
 
 def improve(evidence: Evidence, start: PerParameter, *, steps: int) -> Mode:
     """The nearest mode, or what so many steps come to."""
-    from scipy.optimize import minimize
-
     bounds = evidence.bounds()
-    end = minimize(
+    end = scipy.optimize.minimize(
         evidence.loss,
         np.clip(start, bounds[:, 0], bounds[:, 1]),
         jac=True,

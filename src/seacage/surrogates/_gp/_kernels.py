@@ -1,10 +1,11 @@
 """Covariance functions that add and multiply, with their gradients."""
 
 import math
+import operator
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Literal, get_args
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from jaxtyping import Float, Int
@@ -289,10 +290,9 @@ class AbstractComposition(AbstractKernel):
     one: AbstractKernel
     other: AbstractKernel
 
-    @staticmethod
-    @abstractmethod
-    def join(one: Any, other: Any) -> Any:
-        """Of the evaluations of both parts, or of their values, which may be overwritten."""
+    # Of the evaluations of both parts, and of their values
+    join: ClassVar[Callable[[Any, Any], Any]]
+    join_values: ClassVar[np.ufunc]
 
     def prior(self, width: int) -> Prior:
         return self.one.prior(width) + self.other.prior(width)
@@ -318,25 +318,27 @@ class AbstractComposition(AbstractKernel):
         size = self.one.size(width)
         one = self.one.combine(log_parameters[..., :size], width, leaf)
         other = self.other.combine(log_parameters[..., size:], width, leaf)
-        return lambda *at: self.join(one(*at), other(*at))
+        return lambda *at: self._join(one(*at), other(*at))
+
+    def _join(self, one: Any, other: Any) -> Any:
+        if isinstance(one, Evaluation):
+            return type(self).join(one, other)
+        # In the place of the larger one, as large arrays cost more than what is done with them.
+        return self.join_values(one, other, out=one if one.size >= other.size else other)
 
 
 @dataclass(frozen=True, slots=True)
 class Sum(AbstractComposition):
     """The sum of two kernels: of independent processes that add."""
 
-    @staticmethod
-    def join(one: Any, other: Any) -> Any:
-        return one + other if isinstance(one, Evaluation) else _join_values(np.add, one, other)
+    join, join_values = operator.add, np.add
 
 
 @dataclass(frozen=True, slots=True)
 class Product(AbstractComposition):
     """The product of two kernels: of a process whose size changes as another one does."""
 
-    @staticmethod
-    def join(one: Any, other: Any) -> Any:
-        return one * other if isinstance(one, Evaluation) else _join_values(np.multiply, one, other)
+    join, join_values = operator.mul, np.multiply
 
 
 # By the name under which a saved model finds its kernel again
@@ -388,8 +390,3 @@ def _distance_squared(z: BatchNFeature) -> Callable[[np.ndarray], np.ndarray]:
         return np.maximum(squared, 0.0, out=squared)
 
     return evaluate
-
-
-def _join_values(operation: np.ufunc, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-    """In the place of the larger one, as large arrays cost more than what is done with them."""
-    return operation(one, other, out=one if one.size >= other.size else other)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
+import scipy
 from jaxtyping import Float
 
 from seacage.conventions import ModelError
@@ -144,17 +145,15 @@ class NoiseByInput(AbstractNoise):
         return noise, lambda adjoint: (adjoint * noise) @ basis
 
     def _basis(self, x: RowFeature) -> Float[np.ndarray, "row parameter"]:
-        from scipy.linalg import cholesky, solve_triangular
-
         kernel = StationaryKernel("squared-exponential")
         parameters = np.zeros(1 + x.shape[1])
         parameters[0] = 2.0 * math.log(SWING)
         parameters[1:] = 0.5 * math.log(x.shape[1])
         within = kernel.covariance(parameters, self.places, self.places)
         within[np.diag_indices_from(within)] *= 1.0 + 1e-8
-        lower = cholesky(within, lower=True, check_finite=False)
+        lower = scipy.linalg.cholesky(within, lower=True, check_finite=False)
         cross = kernel.covariance(parameters, self.places, x)
-        smooth = solve_triangular(lower, cross, lower=True, check_finite=False).T
+        smooth = scipy.linalg.solve_triangular(lower, cross, lower=True, check_finite=False).T
         return np.column_stack([np.ones(len(x)), smooth])
 
 

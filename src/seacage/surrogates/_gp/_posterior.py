@@ -49,11 +49,9 @@ class Process:
 
         Raises InputError: the covariance has no factor in float64.
         """
-        from scipy.linalg import LinAlgError
-
         try:
             factor = self._factorise(x, noise_factor)
-        except LinAlgError as error:
+        except np.linalg.LinAlgError as error:
             raise InputError(
                 f"{len(x)} cases give a covariance that is not positive definite. Look for "
                 "features or outputs that are too large by many orders of magnitude."
@@ -69,8 +67,6 @@ class Process:
 
         Raises ModelError: the covariance has no factor, so this was never a fitted model.
         """
-        from scipy.linalg import LinAlgError
-
         if later:
             made = Later(lambda: self._factorise(x, noise_factor))
             return self._posterior(x, noise_factor, weights, made)
@@ -81,7 +77,7 @@ class Process:
                 factor = self._factorise(x, noise_factor)
                 cross = self.kernel.covariance(self.log_parameters, x[:1], x)
                 known = factor.variance_reduction(cross)
-        except (LinAlgError, ValueError) as error:
+        except (np.linalg.LinAlgError, ValueError) as error:
             raise ModelError(broken) from error
         if not np.isfinite(known).all():
             raise ModelError(broken)
@@ -220,13 +216,11 @@ class Posterior(Process):
 
         ``amplitude``: standard deviation of each output that the kernel's is a share of.
         """
-        from scipy.linalg import LinAlgError
-
         new_factor = self._new_noise_factors(x, y, amplitude)
         all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
         noise_factor = np.append(self.noise_factor, new_factor)
         if isinstance(self.factor, Cholesky):
-            with suppress(LinAlgError):  # otherwise the whole has a larger jitter
+            with suppress(np.linalg.LinAlgError):  # otherwise the whole has a larger jitter
                 noise = self.noise.with_pullback(self.log_noise, x)[0] * new_factor
                 corner = self.kernel.covariance(self.log_parameters, x, x)
                 factor = self.factor.extended(self.cross(x), corner, noise)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float
 
 from seacage.conventions import InputError
@@ -16,6 +17,8 @@ from seacage.surrogates._loads._loads import EULER, LoadCases, LoadPrediction, L
 from seacage.surrogates._prediction import Prediction, check_inputs
 from seacage.surrogates._shape._symmetry import Symmetry
 
+RowInput = Float[np.ndarray, "row input"]
+RowLine = Float[np.ndarray, "row line"]
 HEIGHT = 3  # feature of ``sea_features`` that holds Hs
 OFFSET = 0.05  # added before a logarithm is taken, over the statistic's median [-]
 # Of all cases together, as memory grows with their square; each case has as many
@@ -92,7 +95,7 @@ class LoadGP:
 
 
 def fit_tables(
-    x: Float[np.ndarray, "row input"],  # ``case_inputs`` of the images
+    x: RowInput,  # ``case_inputs`` of the images
     tables: Mapping[str, Float[np.ndarray, "row output"]],
     *,
     restarts: int,
@@ -113,9 +116,7 @@ def fit_tables(
 
 
 def _widening(
-    process: gp.FittedGaussianProcess,
-    table: Float[np.ndarray, "row line"],
-    case: Float[np.ndarray, " row"],
+    process: gp.FittedGaussianProcess, table: RowLine, case: Float[np.ndarray, " row"]
 ) -> Float[np.ndarray, " line"]:
     """Factor on standard deviations by which intervals hold the cases that were left out.
 
@@ -123,14 +124,12 @@ def _widening(
     1.96 standard deviations. The level of the quantile is that of conformal prediction, for as
     many cases. A line whose loads never vary has 1.
     """
-    from scipy.special import ndtri
-
     left_out = process.leave_groups_out(case)
     count = len(np.unique(case))
     level = min(1.0, HELD * (1.0 + 1.0 / count))
     known = left_out.std > 0.0
     deviate = np.where(known, np.abs(table - left_out.mean), 0.0) / np.where(known, left_out.std, 1)
-    widening = np.quantile(deviate, level, axis=0) / ndtri(0.5 + 0.5 * HELD)
+    widening = np.quantile(deviate, level, axis=0) / scipy.special.ndtri(0.5 + 0.5 * HELD)
     return np.where(widening > 0.0, widening, 1.0)
 
 
@@ -163,7 +162,7 @@ def draw_images(
     outputs: Mapping[str, Float[np.ndarray, "n line"]],
     *,
     seed: int,
-) -> tuple[Float[np.ndarray, "row input"], dict[str, Float[np.ndarray, "row line"]]]:
+) -> tuple[RowInput, dict[str, RowLine]]:
     """All images of each case, image by image, or as many as there may be, drawn at random.
 
     Returns their ``case_inputs``, with the number of the case, and their outputs.
@@ -269,9 +268,7 @@ class FittedLoadGP:
             damage_equivalent=replace(wear, size=np.where(self.wears, wear.size, np.nan)),
         )
 
-    def _answer(
-        self, name: str, x: Float[np.ndarray, "row input"], *, noise: float | None
-    ) -> tuple[Float[np.ndarray, "row line"], Float[np.ndarray, "row line"]]:
+    def _answer(self, name: str, x: RowInput, *, noise: float | None) -> tuple[RowLine, RowLine]:
         """Mean, and standard deviation with so much of the training's noise variance.
 
         ``noise``: None for means alone.

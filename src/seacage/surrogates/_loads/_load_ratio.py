@@ -65,17 +65,18 @@ class LoadRatio:
         error
             Log ratio less the ratio's of each window, fitted without the window's block.
         """
-        best, error = LoadRatio(), log_ratio
+        best, error, nothing = LoadRatio(), log_ratio, np.zeros_like(log_ratio)
         if len(np.unique(block)) < LEAST_BLOCKS:
             return best, error
         for names in ([""], sorted(variables)):
             left_out = {
-                name: _cross_validate(log_ratio, block, name, variables.get(name)) for name in names
+                name: _cross_validate(log_ratio, block, name, variables.get(name, nothing))
+                for name in names
             }
             size = {one: np.minimum(np.abs(left_out[one]), MOST_ERROR) for one in names}
             name = min(names, key=lambda one: float(np.mean(size[one])), default="")
             if names and is_gain(np.minimum(np.abs(error), MOST_ERROR) - size[name], block):
-                best = _fit(log_ratio, block, name, variables.get(name))
+                best = _fit(log_ratio, block, name, variables.get(name, nothing))
                 error = left_out[name]
         return best, error
 
@@ -97,22 +98,18 @@ def is_gain(better: Series, block: IntPerWindow) -> bool:
     return bool(by_block.mean() > PROOF_SD * spread)
 
 
-def _cross_validate(
-    log_ratio: Series, block: IntPerWindow, name: str, values: Series | None
-) -> Series:
+def _cross_validate(log_ratio: Series, block: IntPerWindow, name: str, values: Series) -> Series:
     error = np.empty_like(log_ratio)
     for one in np.unique(block):
         out = block == one
-        inside = None if values is None else values[~out]
-        fitted = _fit(log_ratio[~out], block[~out], name, inside)
-        here = {} if values is None else {name: values[out]}
-        error[out] = log_ratio[out] - fitted.log(here, int(out.sum()))
+        fitted = _fit(log_ratio[~out], block[~out], name, values[~out])
+        error[out] = log_ratio[out] - fitted.log({name: values[out]}, int(out.sum()))
     return error
 
 
-def _fit(log_ratio: Series, block: IntPerWindow, name: str, values: Series | None) -> LoadRatio:
-    varies = values is not None and np.ptp(values) > 0.0
-    values = values if values is not None and varies else np.zeros_like(log_ratio)
+def _fit(log_ratio: Series, block: IntPerWindow, name: str, values: Series) -> LoadRatio:
+    varies = np.ptp(values) > 0.0
+    values = values if varies else np.zeros_like(log_ratio)
     centre, width = float(values.mean()), float(values.std()) if varies else 1.0
     x = np.column_stack([np.ones_like(values), (values - centre) / width])
     found, prior = np.array([np.median(log_ratio), 0.0]), np.diag([CONSTANT_SD, SLOPE_SD])

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, Self
 
 import numpy as np
+import scipy
 from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Rows
@@ -159,10 +160,8 @@ class LoadPrediction(Rows):
         return self._load(self.size * factor)
 
     def _share_below(self, factor: CaseLine) -> np.ndarray:
-        from scipy.special import ndtr
-
         with np.errstate(divide="ignore", over="ignore"):
-            plain = ndtr(np.log(factor) / np.maximum(self.log_std, 1e-12))
+            plain = scipy.special.ndtr(np.log(factor) / np.maximum(self.log_std, 1e-12))
             around = factor[..., None] * np.exp(-self.log_std[..., None] * NODES) - 1.0
             gumbel = np.maximum(self.gumbel[..., None], 1e-12)
             extreme = np.exp(-np.exp(-(around / gumbel + EULER))) @ (WEIGHTS / WEIGHTS.sum())

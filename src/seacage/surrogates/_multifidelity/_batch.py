@@ -165,8 +165,11 @@ class BatchedLevels:
         variances = np.maximum(prior - np.stack(known)[..., 0], 0.0)
         means = (local @ self.line[:, :-1] + link * self.line[:, -1:]).reshape(len(cross), -1)
         means += (cross @ self.weights)[..., 0]
-        mean, variance = self._mix(means, variances)
-        return mean.reshape(below.shape), variance.reshape(below.shape)
+        # By the law of total variance over the members.
+        mean = self.share @ means
+        variance = self.share @ (variances * self.amplitude[:, None] ** 2)
+        variance += self.share @ (means - mean[self.owner]) ** 2
+        return (mean + self.outputs[:, None]).reshape(below.shape), variance.reshape(below.shape)
 
     def _evaluate(
         self,
@@ -184,12 +187,3 @@ class BatchedLevels:
             covariances, variances = [np.concatenate(covariances)], [np.concatenate(variances)]
         members, points = len(self.members), self.weights.shape[1]
         return covariances[0].reshape(members, -1, points), variances[0].reshape(members, -1)
-
-    def _mix(
-        self, means: Float[np.ndarray, "member value"], variances: Float[np.ndarray, "member value"]
-    ) -> tuple[Float[np.ndarray, "level value"], Float[np.ndarray, "level value"]]:
-        """Mean and variance of the outputs, by the law of total variance over the members."""
-        mean = self.share @ means
-        variance = self.share @ (variances * self.amplitude[:, None] ** 2)
-        variance += self.share @ (means - mean[self.owner]) ** 2
-        return mean + self.outputs[:, None], variance

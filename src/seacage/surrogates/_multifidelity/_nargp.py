@@ -32,7 +32,10 @@ from seacage.surrogates._prediction import (
 from seacage.surrogates._scaling import Scaling
 
 NFeature = Float[np.ndarray, "n feature"]
+NewFeature = Float[np.ndarray, "new feature"]
 PerFeature = Float[np.ndarray, " feature"]
+PerN = Float[np.ndarray, " n"]
+PerNew = Float[np.ndarray, " new"]
 PerRow = Float[np.ndarray, " row"]
 RowFeature = Float[np.ndarray, "row feature"]
 ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
@@ -265,7 +268,14 @@ class FittedNARGP:
         """
         level = self._level(level, lowest=1 if below is None else 2, what="predict")
         if level == 1:
-            return self._lowest(x, noisy=noisy)
+            if self.lent is None:
+                return self.own[0].predict(x, noisy=noisy)
+            if noisy:
+                raise InputError(
+                    "predict: level 1 is lent, and its noise is not known here. "
+                    "Ask the model that lent it."
+                )
+            return self.lent.predict(x)
         x = check_inputs(x, what="predict", width=self._width)
         if below is None:
             below = self.lower.predict(x)
@@ -298,13 +308,7 @@ class FittedNARGP:
             below = _central_differences(self.lower, x, step=step)
         return propagate_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
 
-    def updated(
-        self,
-        x: Float[np.ndarray, "new feature"],
-        y: Float[np.ndarray, " new"],
-        *,
-        level: int | None = None,
-    ) -> Self:
+    def updated(self, x: NewFeature, y: PerNew, *, level: int | None = None) -> Self:
         """Conditioned on more cases of a level above the first, without learning anew.
 
         Levels below stay the same objects. Levels above were fitted at the mean of this one, so
@@ -327,7 +331,7 @@ class FittedNARGP:
                 fitted = fitted._replaced(above, upper_process.moved(np.column_stack([x, below])))  # noqa: SLF001
         return fitted
 
-    def fold_density(self, y: Float[np.ndarray, " n"], folds: Folds) -> PerRow:
+    def fold_density(self, y: PerN, folds: Folds) -> PerRow:
         """Log density of the highest level's cases, those of each fold held out at all levels.
 
         The hyperparameters, and the level below at the cases that are kept, stay those learned
@@ -380,16 +384,6 @@ class FittedNARGP:
 
     def _steps(self, level: int) -> "list[_Step]":
         return [_Step(process) for process in self.upper[: level - 1]]
-
-    def _lowest(self, x: RowFeature, *, noisy: bool) -> Prediction:
-        if self.lent is None:
-            return self.own[0].predict(x, noisy=noisy)
-        if noisy:
-            raise InputError(
-                "predict: level 1 is lent, and its noise is not known here. "
-                "Ask the model that lent it."
-            )
-        return self.lent.predict(x)
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs; a lent level 1 is left out."""
@@ -464,9 +458,7 @@ def _check_cases(
     return cases
 
 
-def _observations_below(
-    x: NFeature, below: Cases, *, level: int, what: str
-) -> Float[np.ndarray, " n"]:
+def _observations_below(x: NFeature, below: Cases, *, level: int, what: str) -> PerN:
     """What the level below observed at the same inputs."""
     found = {row.tobytes(): value for row, value in zip(*below, strict=True)}
     values = [found.get(row.tobytes(), np.nan) for row in x]
@@ -488,7 +480,7 @@ def _lengths_below(fitted: FittedNARGP, x: NFeature) -> tuple[float, ...]:
     return tuple((fitted.own[0].posterior.log_parameters[1:] + np.log(ratio)).tolist())
 
 
-def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> Float[np.ndarray, " n"]:
+def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> PerN:
     if mean.ndim != 1:
         raise InputError(
             f"{what}: `lower` answers with shape {mean.shape}; expected one number per row. "

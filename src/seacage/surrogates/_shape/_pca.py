@@ -12,6 +12,7 @@ from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._prediction import Prediction, check_inputs, check_outputs, check_shapes
 
+RowNode3 = Float[np.ndarray, "row node 3"]
 PAPER_VARIANCE = 0.93  # share of the variance that the paper keeps, in three modes
 
 
@@ -275,14 +276,12 @@ class FittedPcaGP:
         """How many are kept."""
         return len(self.scores)
 
-    def encode(
-        self, node_position: Float[np.ndarray, "row node 3"]
-    ) -> Float[np.ndarray, "row mode"]:
+    def encode(self, node_position: RowNode3) -> Float[np.ndarray, "row mode"]:
         """Scores of shapes [m]."""
         rows = np.reshape(node_position, (len(node_position), -1))
         return self.basis.encode(check_inputs(rows, what="encode", width=len(self.basis.centre)))
 
-    def decode(self, score: Float[np.ndarray, "row mode"]) -> Float[np.ndarray, "row node 3"]:
+    def decode(self, score: Float[np.ndarray, "row mode"]) -> RowNode3:
         """Shapes of scores [m]."""
         return self.basis.decode(score).reshape(len(score), self.basis.nodes, 3)
 

@@ -203,7 +203,14 @@ class FittedShapeGP:
 
     def variance(self, score_std: RowMode, nodes: Nodes) -> Row4Node:
         """Of x, y and z of each node, and the covariance of x with y, at home [m2]."""
-        moments = self._moments(score_std**2, nodes)
+        power, prior = score_std**2, self.scores.amplitude**2
+        share = power.sum(axis=1) / max(float(prior.sum()), np.finfo(float).tiny)
+        # With one kernel and white noise all scores know the same share of what they varied by.
+        alike = share[:, None] * prior
+        if (np.abs(power - alike) <= 1e-9 * alike).all():
+            moments = share[:, None, None] * self.prior_moments[:, nodes]
+        else:
+            moments = np.tensordot(power, self.products[..., nodes], axes=1)
         scale = self.scale[nodes].T
         moments[:, :3] += self.left_out[nodes].T ** 2
         return moments * np.vstack([scale**2, scale[0] * scale[1]])
@@ -280,16 +287,6 @@ class FittedShapeGP:
         rows = (len(x), self.modes)
         mean = self.render(score.mean.reshape(rows), nodes)
         return mean, self.variance(score.std.reshape(rows), nodes)
-
-    def _moments(self, power: RowMode, nodes: Nodes) -> Float[np.ndarray, "row product node"]:
-        """Second moments of the nodes from those of the scores."""
-        prior = self.scores.amplitude**2
-        share = power.sum(axis=1) / max(float(prior.sum()), np.finfo(float).tiny)
-        # With one kernel and white noise all scores know the same share of what they varied by.
-        alike = share[:, None] * prior
-        if (np.abs(power - alike) <= 1e-9 * alike).all():
-            return share[:, None, None] * self.prior_moments[:, nodes]
-        return np.tensordot(power, self.products[..., nodes], axes=1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
 
 from seacage.conventions import InputError, ModelError
@@ -158,11 +159,9 @@ def _match(
     position: Node3, centre: Float[np.ndarray, "2"], turn: Float[np.ndarray, "2 2"]
 ) -> Int[np.ndarray, " node"]:
     """Which node falls on each node."""
-    from scipy.spatial import KDTree
-
     image = position.copy()
     image[:, :2] = centre + (position[:, :2] - centre) @ turn.T
-    distance, nearest = KDTree(image).query(position)
+    distance, nearest = scipy.spatial.KDTree(image).query(position)
     source = np.asarray(nearest)
     if distance.max() > COINCIDE or len(np.unique(source)) < len(source):
         node = int(np.argmax(distance))

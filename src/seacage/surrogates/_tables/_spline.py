@@ -3,15 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import prod
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
 import numpy as np
+import scipy
 from jaxtyping import Float, Int
 
 from seacage.surrogates._gp import chunks
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_array
 
 FEWEST = 4  # nodes of an axis: four fix a cubic
 PerRow = Float[np.ndarray, " row"]
@@ -60,10 +58,8 @@ class Spline:
             answer[rows] = self._weights(place[rows]) @ self.coefficients
         return answer
 
-    def _weights(self, place: Float[np.ndarray, "row axis"]) -> "csr_array":
+    def _weights(self, place: Float[np.ndarray, "row axis"]) -> "scipy.sparse.csr_array":
         """Row of B-spline weights for each place: the product with the coefficients is one loop."""
-        from scipy.sparse import csr_array
-
         # Whole columns at a time: the inner loops run over the rows, not over four weights.
         weights, first = [np.ones(len(place))], np.zeros(len(place), dtype=np.int32)
         offset = np.zeros(1, dtype=np.int32)
@@ -78,7 +74,8 @@ class Spline:
         weight = np.stack(weights, axis=1).ravel()
         index = (first[:, None] + offset.astype(np.int32)).ravel()
         start = np.arange(0, len(weight) + 1, len(weights), dtype=np.int32)
-        return csr_array((weight, index, start), shape=(len(place), prod(sizes)), copy=False)
+        shape = (len(place), prod(sizes))
+        return scipy.sparse.csr_array((weight, index, start), shape=shape, copy=False)
 
 
 def nodes(shape: Sequence[int], periodic: Sequence[bool]) -> Float[np.ndarray, "node axis"]:
@@ -112,8 +109,6 @@ def _pieces(place: PerRow, cells: int) -> tuple[list[PerRow], Int[np.ndarray, " 
 
 def _open(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coefficient line"]:
     """B-spline coefficients of lines with two ends."""
-    from scipy.linalg import solve_banded
-
     count = len(values)
     # By diagonals: row i of the system holds the values' condition (1, 4, 1)/6 in its columns
     # i-1..i+1, and the first and the last row that the third derivative does not jump.
@@ -125,7 +120,7 @@ def _open(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coeffici
         band[4 + offset, count + 1 - offset] = weight
     target = np.zeros((count + 2, values.shape[1]))
     target[1:-1] = values
-    return solve_banded((4, 4), band, target, check_finite=False)
+    return scipy.linalg.solve_banded((4, 4), band, target, check_finite=False)
 
 
 def _close(values: Float[np.ndarray, "node line"]) -> Float[np.ndarray, "coefficient line"]:

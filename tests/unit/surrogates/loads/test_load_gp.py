@@ -197,7 +197,7 @@ def test_without_spread_means_stay_and_there_is_no_interval(fitted: FittedLoadGP
 
 
 def test_a_share_is_no_percentage():
-    with pytest.raises(InputError, match=r"level = 95 is no share"):
+    with pytest.raises(InputError, match=r"level = 95 is not between 0 and 1"):
         one_load(0.1, 0.0).interval(95.0)
 
 
