@@ -13,7 +13,7 @@ from pathlib import Path, PurePosixPath
 
 from pydantic import ValidationError
 
-from seacage.conventions import InputError
+from seacage.conventions import InputError, read_text
 from seacage.dynamics import PHYSICS
 from seacage.service._backup import MANIFEST, MANIFEST_TYPE, SETTINGS, Manifest
 from seacage.service._store._database._sqlite import is_served
@@ -119,4 +119,4 @@ def _adapt_settings(folder: Path, data: Path, manifest: Manifest) -> None:
 
     if SETTINGS in manifest.files:
         path = folder / SETTINGS
-        path.write_text(_PLACE.sub(new_place, path.read_text("utf-8")), "utf-8")
+        path.write_text(_PLACE.sub(new_place, read_text(path)), "utf-8")

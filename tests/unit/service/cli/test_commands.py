@@ -54,6 +54,8 @@ COMMANDS = [
     "archive write",
     "archive read",
     "archive check",
+    "backup",
+    "restore",
     "config check",
     "config show",
     "doctor",

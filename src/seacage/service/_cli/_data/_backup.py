@@ -72,6 +72,7 @@ def restore(
         seacage serve --data var --twin var/served/twin
 
     Options:
+        file: That `seacage backup` wrote.
         data: Folder to restore, absent or empty.
         replace: Move a folder that is there aside first.
         other_physics: Restore twins of another simulator; they must be trained anew.
