@@ -96,7 +96,8 @@ def test_a_line_is_chosen_on_the_rose_by_keys_and_its_panel_says_what_the_servic
 def test_the_ranking_of_parted_lines_is_asked_for_when_opened_and_leads_to_the_worst(
     chromium: Path, wavy: Running
 ) -> None:
-    worst = wavy.reader.get("/api/v1/cages/ace/what-if-parted").json()["lines"][0]
+    path = "/api/v1/cages/ace/what-if-parted"
+    worst = eventually(lambda: wavy.reader.get(path).json()["lines"], bool, seconds=20.0)[0]
     with opened_browser(chromium, webgl=False) as watched:
         opened(watched, address(wavy, "read"))
         page = watched.page
