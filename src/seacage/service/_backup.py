@@ -68,15 +68,14 @@ def back_up(settings: Settings, to: Path, *, config: Path | None = None) -> Mani
         part = Path(folder) / "backup.tar"
         with tarfile.open(part, "w") as tar:
             backup, place = _Backup(tar), store_place(settings)
-            _add_service(backup, settings, place, copied=Path(folder) / _SAMPLES)
-            if config is not None:
-                backup.add(config, SETTINGS)
+            places = _places(settings, config)
+            _add_all(backup, settings, places, Path(folder) / _SAMPLES)
             manifest = Manifest(
                 version=version("seacage"),
                 physics=PHYSICS,
                 made=datetime.now(UTC).isoformat(timespec="seconds"),
                 database=None if isinstance(place, Path) else without_password(place),
-                places=_places(settings, place),
+                places=places,
                 files=dict(backup.files),
             )
             backup.add_content(MANIFEST_TYPE.dump_json(manifest, indent=1), MANIFEST)
@@ -87,9 +86,11 @@ def back_up(settings: Settings, to: Path, *, config: Path | None = None) -> Mani
     return manifest
 
 
-def _places(settings: Settings, place: Path | str) -> dict[str, str]:
-    """Where each folder or file of the settings lies in a restored data folder."""
-    places = {str(settings.data): "."}
+def _places(settings: Settings, config: Path | None) -> dict[str, str]:
+    """Where each folder or file of the settings, and theirs, lies in a restored data folder."""
+    places, place = {str(settings.data): "."}, store_place(settings)
+    if config is not None:
+        places[str(config)] = SETTINGS
     if isinstance(place, Path):
         places[str(place)] = _SAMPLES
     if settings.store.archive is not None:
@@ -97,26 +98,31 @@ def _places(settings: Settings, place: Path | str) -> dict[str, str]:
     return places | {str(one.twin): f"{_TWINS}/{one.name or 'twin'}" for one in settings.cages}
 
 
-def _add_service(backup: "_Backup", settings: Settings, place: Path | str, *, copied: Path) -> None:
+def _add_all(backup: "_Backup", settings: Settings, places: dict[str, str], copied: Path) -> None:
     """Add everything that a service keeps, in an order in which nothing is lost.
 
     Rows of a table are stored before the service notes its place in the table, and days are
     archived before they leave the store. So the notes come first, then the samples, then the
     archive: what moves in the meantime is in the backup twice.
 
-    ``place``: of the store. ``copied``: where a file of samples is copied to.
+    ``places``: of what is added. ``copied``: where a file of samples is copied to.
     """
-    archive, replayed = settings.store.archive, store_place(settings, replayed=True)
-    backup.add_folder(settings.data, ".", without=[archive, place, replayed])
+    archive, place = settings.store.archive, store_place(settings)
+    # A folder that was restored holds the places of what is added from elsewhere now.
+    apart = [archive, place, store_place(settings, replayed=True)]
+    apart += [settings.data / new for new in places.values()]
+    backup.add_folder(settings.data, ".", without=apart)
     if isinstance(place, Path) and place.exists():
         copy_database(place, copied)
         backup.add(copied, _SAMPLES)
     if archive is not None:
         for path in Archive(archive).files():
             backup.add(path, f"{_ARCHIVE}/{path.relative_to(archive).as_posix()}")
-    for twin, name in _places(settings, place).items():
-        if name.startswith(f"{_TWINS}/"):
-            backup.add_folder(Path(twin), name)
+    for source, name in places.items():
+        if name == SETTINGS:
+            backup.add(Path(source), name)
+        elif name.startswith(f"{_TWINS}/"):
+            backup.add_folder(Path(source), name)
 
 
 class _Backup:
@@ -164,9 +170,7 @@ class _Hashed:
 
 
 def _files_of(folder: Path, without: Collection[Path | str | None]) -> Iterator[Path]:
-    apart = {
-        Path(f"{one}{end}").resolve() for one in without if one is not None for end in SIDE_FILES
-    }
+    apart = {Path(f"{one}{end}").resolve() for one in without if one for end in SIDE_FILES}
     for place, folders, names in os.walk(folder, followlinks=True):
         folders[:] = sorted(one for one in folders if Path(place, one).resolve() not in apart)
         for path in (Path(place, name) for name in sorted(names)):

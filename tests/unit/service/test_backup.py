@@ -147,6 +147,9 @@ def test_the_archive_and_the_settings_move_along(tmp_path, settings):
     assert after.cages[0].tail == before.cages[0].tail
     assert after.webhooks == before.webhooks
     assert [fault for _, fault in Archive(new / "archive").faults()] == [None]
+    back_up(after, tmp_path / "again.tar", config=new / "seacage.toml")
+    with tarfile.open(tmp_path / "again.tar") as tar, tarfile.open(tmp_path / "backup.tar") as old:
+        assert sorted(tar.getnames()) == sorted(old.getnames()), "none is in it twice"
     assert len(Archive(new / "archive").read("ace", "buoy-1", date(2020, 2, 1))) == 1
 
 

@@ -25,9 +25,8 @@ def _with_zone(t: datetime) -> datetime:
 
 
 def _of_our_time(t: datetime) -> datetime:
-    if (
-        _with_zone(t).year not in _YEARS
-    ):  # at the ends of the calendar, another zone's time does not exist
+    # At the ends of the calendar, another zone's time does not exist.
+    if _with_zone(t).year not in _YEARS:
         raise ValueError(f"no time here is from the year {t.year}; check the source's clock")
     return t
 

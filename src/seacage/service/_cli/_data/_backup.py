@@ -1,15 +1,12 @@
 """``seacage backup`` and ``seacage restore``: a service in one file, and back."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from seacage.service._cli._console import guard, report
 from seacage.service._cli._options import DataFolder, InFile, InFolder
-
-if TYPE_CHECKING:
-    from seacage.service._backup import Manifest
 
 
 @guard
@@ -49,7 +46,10 @@ def backup(
     manifest = back_up(settings, file, config=config)
     rows = [
         ("Backup", f"{file}, {len(manifest.files)} files, {file.stat().st_size / 1e6:.1f} MB"),
-        ("Samples", "in it" if manifest.database is None else _by_hand("pg_dump", manifest)),
+        (
+            "Samples",
+            "in it" if manifest.database is None else _by_hand("pg_dump", manifest.database),
+        ),
     ]
     report({"file": str(file), "files": len(manifest.files), "made": manifest.made}, rows=rows)
 
@@ -91,11 +91,11 @@ def restore(
     if restored.aside is not None:
         rows.append(("Before", f"{restored.aside}; delete it when it is no longer needed"))
     if manifest.database is not None:
-        rows.append(("Samples", _by_hand("pg_restore", manifest)))
+        rows.append(("Samples", _by_hand("pg_restore", manifest.database)))
     rows.append(("Serve", f"seacage serve {' '.join(options)}"))
     aside = str(restored.aside) if restored.aside else None
     report({"data": str(data), "files": len(manifest.files), "before": aside}, rows=rows)
 
 
-def _by_hand(command: str, manifest: "Manifest") -> str:
-    return f"in {manifest.database}: {command} takes them, see docs/service.md"
+def _by_hand(command: str, database: str) -> str:
+    return f"in {database}: {command} takes them, see docs/service.md"
