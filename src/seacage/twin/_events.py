@@ -14,8 +14,14 @@ class Answered:
 
     t: datetime  # the twin's clock
     answer: Answer  # one row
-    metocean: Metocean | None  # the reading it rests on, one row; None before the first
-    input_age_s: float | None  # of that reading [s]
+    metocean: Metocean | None  # the water at the cage, one row; None before the first reading
+    input_age_s: float | None  # of the buoy's reading [s]
+    reported: Metocean | None = None  # by the buoy, where its water has still to arrive
+
+    @property
+    def at_buoy(self) -> Metocean | None:
+        """The buoy's reading, one row; None before the first."""
+        return self.metocean if self.reported is None else self.reported
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,6 +11,7 @@ from seacage.conventions import Flag, InputError, Rows
 from seacage.records import FieldRecord, Record, Sample, instant
 from seacage.surrogates import block_means, spread_design
 from seacage.twin._metocean import Metocean, input_keys
+from seacage.twin._travel_time import TravelTime
 
 HOLD_S = 10800.0  # longest time for which a buoy's value is held [s]; the live twin's default
 
@@ -31,7 +32,7 @@ class Pairs(Rows):
     """Readings of one sensor, each with the water that the buoy had reported."""
 
     time: Shaped[np.ndarray, " pair"]  # UTC, ascending
-    metocean: Metocean  # at the buoy
+    metocean: Metocean  # at the cage, as far as the buoy tells
     value: Float[np.ndarray, " pair"]  # of the sensor [N] or [m]
 
     def __len__(self) -> int:
@@ -47,8 +48,9 @@ def align(
     mean_s: float | None = None,
     hold_s: float = HOLD_S,
     suspect: bool = False,
+    travel_time: TravelTime | None = None,
 ) -> Pairs:
-    """Pair each reading of a sensor with the buoy's last sample before it.
+    """Pair each reading of a sensor with the water at the cage, from the buoy's last samples.
 
     Readings that failed a check, and times without a sound and fresh sample of the buoy, are
     left out.
@@ -67,6 +69,8 @@ def align(
         Largest age of the buoy's sample [s].
     suspect
         Keep readings, of sensor or buoy, that a check found suspect.
+    travel_time
+        Of the current from the buoy to the cage; None for none.
     """
     if sensor not in field.sensors:
         raise InputError(
@@ -89,11 +93,8 @@ def align(
         [_sound(field.buoy, key, suspect=suspect) for key in input_keys(["current"])]
     )
     known = (age <= hold_s) & trusted[held]
-    pairs = Pairs(
-        time=time[known],
-        metocean=Metocean.of_record(field.buoy).rows(held[known]),
-        value=value[known],
-    )
+    water = (travel_time or TravelTime()).water_at(field.buoy, time[known])
+    pairs = Pairs(time=time[known], metocean=water, value=value[known])
     return pairs if mean_s is None else _block_means(pairs, mean_s)
 
 

@@ -1,7 +1,7 @@
 """State of a twin between two steps: its clock and the last minutes of each stream."""
 
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime, timedelta
 from itertools import chain
@@ -74,6 +74,24 @@ class TwinState:
         """Return the newest samples of a stream by key, as far as they are not ahead of a clock."""
         taken = latest_in(self.streams.get(stream, ()), now)
         return taken.newest if taken else {}
+
+    def around(
+        self, stream: str, t: datetime, keys: Sequence[str]
+    ) -> tuple[Mapping[str, Sample], ...]:
+        """Return the samples with the last sound values until a time, and the first after it.
+
+        They are by key, and none where there are none on both sides. Values count where they were
+        measured together.
+        """
+        taken = self.streams.get(stream, ())
+        place = bisect_right(taken, t, key=lambda one: one.sample.t)
+        before, after = (
+            (one.newest for one in some if _are_together(one.newest, keys))
+            for some in (reversed(taken[:place]), taken[place:])
+        )
+        last = next(before, None)
+        first = next((one for one in after if one[keys[0]].t > t), None)
+        return () if last is None or first is None else (last, first)
 
     @property
     def adapted(self) -> str:
@@ -159,6 +177,11 @@ def amendments_in(stream: Stream) -> tuple[Amendment, ...]:
     )
 
 
+def is_usable(sample: Sample, key: str) -> bool:
+    """Whether a value may reach a model."""
+    return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
+
+
 def is_flagged(sample: Sample) -> bool:
     """Whether a value has a flag worse than good."""
     return any(flag in {Flag.SUSPECT, Flag.FAIL, Flag.MISSING} for flag in sample.flags.values())
@@ -209,6 +232,12 @@ def _apply(stream: Stream, one: Amendment) -> Stream:
         else taken
         for taken in stream
     )
+
+
+def _are_together(newest: Mapping[str, Sample], keys: Sequence[str]) -> bool:
+    """Whether values are sound, and of one time."""
+    sound = all(key in newest and is_usable(newest[key], key) for key in keys)
+    return sound and len({newest[key].t for key in keys}) == 1
 
 
 def _place(one: Amendment) -> tuple[str, datetime, str]:

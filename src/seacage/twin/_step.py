@@ -23,6 +23,7 @@ def receive(
     *,
     timeouts: Mapping[str, float],  # the streams of the twin, and the timeout of each [s]
     limits: StreamTimeouts,  # limits on disorder and on clocks that are ahead
+    history_s: Mapping[str, float],  # how much more is kept of some streams [s]
     # Flags that have changed since, of these samples or of earlier ones
     amendments: Sequence[Amendment] = (),
 ) -> tuple[TwinState, tuple[Notice, ...]]:
@@ -34,8 +35,8 @@ def receive(
     before, notices = state, list[Notice]()
     fallen = _silent(before, now, timeouts)
     streams = dict(state.streams)
-    horizon = _horizon(state, now)
     for sample in samples:
+        horizon = _horizon(state, now, history_s.get(sample.stream, 0.0))
         notices += _take(streams, sample, now, timeouts, limits, horizon)
     state = replace(state, streams=streams)
     if amendments:
@@ -54,20 +55,29 @@ def receive(
     return replace(state, clock=now, silent=silent), (*gone, *back, *notices)
 
 
-def forget(state: TwinState, now: datetime, *, disorder_s: float) -> TwinState:
+def forget(
+    state: TwinState,
+    now: datetime,
+    *,
+    disorder_s: float,  # see ``StreamTimeouts`` [s]
+    history_s: Mapping[str, float],  # how much more is kept of some streams [s]
+) -> TwinState:
     """Forget samples and amendments that are no longer needed."""
-    horizon = _horizon(state, now)
     streams = {
-        name: trim(stream, horizon, disorder_s=disorder_s) for name, stream in state.streams.items()
+        name: trim(
+            stream, _horizon(state, now, history_s.get(name, 0.0)), disorder_s=disorder_s
+        )
+        for name, stream in state.streams.items()
     }
     amendments = tuple(one for one in state.amendments if one.t > now - ADAPTATION_BLOCK)
     return replace(state, streams=streams, amendments=amendments)
 
 
-def _horizon(state: TwinState, now: datetime) -> datetime:
-    """Time from which samples are kept: those that intervals will be adapted to."""
+def _horizon(state: TwinState, now: datetime, history_s: float) -> datetime:
+    """Time from which samples are kept: of those that intervals will be adapted to, and before."""
     until = state.adapted_until
-    return (now if until is None else min(until, now)) - ADAPTATION_BLOCK
+    first = (now if until is None else min(until, now)) - ADAPTATION_BLOCK
+    return first - timedelta(seconds=history_s)
 
 
 def _last(state: TwinState, stream: str, now: datetime) -> datetime:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, fields, replace
-from datetime import datetime
+from datetime import datetime, timedelta
 from pathlib import Path
 from typing import Self
 
@@ -11,7 +11,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Flag, InputError, Origin, duration_text
 from seacage.ocean import SeaState
-from seacage.records import Amendment, Record, Sample
+from seacage.records import Amendment, Record, Sample, instant
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
@@ -32,16 +32,19 @@ from seacage.twin._parted import NO_PARTED_LINES, IfParted
 from seacage.twin._provenance import Provenance
 from seacage.twin._saving import from_parts, read_folder, to_parts, write_folder
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
-from seacage.twin._state import Held, TwinState
+from seacage.twin._state import Held, TwinState, is_usable
 from seacage.twin._step import forget, receive
+from seacage.twin._travel_time import TravelTime, microseconds
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reading:
-    """The input in force at a time: the buoy's newest reading that is not ahead of it."""
+    """The input in force at a time, by the buoy's readings that are not ahead of it."""
 
-    metocean: Metocean | None  # one row; None before the first
-    age_s: float | None  # of its oldest part [s]
+    # One row: at the cage, and as reported; None before the first
+    metocean: Metocean | None
+    reported: Metocean | None
+    age_s: float | None  # of the oldest part of the newest reading [s]
     trouble: str  # why it cannot be used, in one sentence; "" where it can
 
 
@@ -65,6 +68,8 @@ class Twin:
         Numbers of the fault detector, which reads them in ``assess``.
     discrepancy
         Distribution of true shapes about its shapes; None where there is none.
+    travel_time
+        Of the current from the buoy to the cage.
     """
 
     models: Models
@@ -73,6 +78,7 @@ class Twin:
     timeouts: StreamTimeouts = field(default_factory=StreamTimeouts)
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     discrepancy: Discrepancy | None = None
+    travel_time: TravelTime = TravelTime()
 
     @classmethod
     def read(cls, folder: str | Path, *, key: bytes | None = None) -> Self:
@@ -130,11 +136,14 @@ class Twin:
             ],
         )
 
-    def predict_record(self, buoy: Record) -> Answer:
+    def predict_record(self, buoy: Record, *, among: Record | None = None) -> Answer:
         """Answer for each row of a buoy's record; a row that failed its checks is not valid.
 
         These are the answers that ``step`` gives to the record's samples, made in blocks and
         so faster; only ``step`` adapts the intervals to the sensors' readings.
+
+        ``among``: a record that has these rows and those before them, for the time that the
+        current takes to the cage; None where the rows are all there is.
         """
         keys = input_keys(self.models.inputs)
         absent = [key for key in keys if key not in buoy.values]
@@ -147,7 +156,8 @@ class Twin:
         for key in keys:
             for row in np.flatnonzero(~buoy.usable(key)):
                 trouble[row] = trouble[row] or _fault(buoy.stream, key, int(buoy.flags[key][row]))
-        return self.models.answer(Metocean.of_record(buoy), trouble)
+        water = self.travel_time.water_at(buoy if among is None else among, buoy.time)
+        return self.models.answer(water, trouble)
 
     def if_parted(
         self, metocean: SeaState | Sequence[SeaState] | Metocean, line: str | None = None
@@ -231,10 +241,15 @@ class Twin:
             timeouts={self.buoy: self.timeouts.stale_after_s}
             | dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s),
             limits=self.timeouts,
+            history_s=self._history_s,
             amendments=amendments,
         )
-        state = self._adapt(state, now)
-        return forget(state, now, disorder_s=self.timeouts.disorder_s), notices
+        state, disorder_s = self._adapt(state, now), self.timeouts.disorder_s
+        return forget(state, now, disorder_s=disorder_s, history_s=self._history_s), notices
+
+    @property
+    def _history_s(self) -> dict[str, float]:
+        return {self.buoy: self.travel_time.history_s}
 
     def _adapt(self, state: TwinState, now: datetime) -> TwinState:
         """Adapt the intervals to the readings of the blocks that are due at a time.
@@ -281,7 +296,11 @@ class Twin:
         state = replace(state, tracked=tracked, held=None if reading.trouble else held)
         answer = self._scale(held.answer, state)
         return state, Answered(
-            t=now, answer=answer, metocean=reading.metocean, input_age_s=reading.age_s
+            t=now,
+            answer=answer,
+            metocean=reading.metocean,
+            input_age_s=reading.age_s,
+            reported=reading.reported,
         )
 
     def _predictions(self, answer: Answer) -> dict[str, MeanStd | None]:
@@ -314,7 +333,7 @@ class Twin:
         missing = [key for key in keys if key not in newest]
         if missing:
             trouble = f"{self.buoy} has not sent {missing[0]} yet."
-            return Reading(metocean=None, age_s=None, trouble=trouble)
+            return Reading(metocean=None, reported=None, age_s=None, trouble=trouble)
         columns = {
             key: np.array([sample.values[key] if self._is_known(sample, key, t) else np.nan])
             for key, sample in newest.items()
@@ -330,7 +349,31 @@ class Twin:
                 f"The last reading of {self.buoy} is {duration_text(age_s)} old; "
                 f"{duration_text(limit_s)} is the limit."
             )
-        return Reading(metocean=Metocean.from_columns(columns, 1), age_s=age_s, trouble=trouble)
+        reported = Metocean.from_columns(columns, 1)
+        water = reported if trouble else self._arrived(state, reported, t)
+        return Reading(metocean=water, reported=reported, age_s=age_s, trouble=trouble)
+
+    def _arrived(self, state: TwinState, reported: Metocean, t: datetime) -> Metocean:
+        """Water at the cage, whose current left the buoy a while ago.
+
+        It is found anew with each current that the buoy sends, and each minute.
+        """
+        keys, travel = input_keys(["current"]), self.travel_time
+        sent = max(sample.t for key, sample in state.newest(self.buoy, t).items() if key in keys)
+        at = max(t.replace(second=0, microsecond=0), sent)
+        left = at - timedelta(seconds=float(travel.of(reported.current_velocity)[0]))
+        past = state.around(self.buoy, left, keys) if left < sent else ()
+        if not past:
+            return reported
+        columns = {key: np.array([one[key].values[key] for one in past]) for key in keys}
+        known = Metocean.from_columns(columns, len(past)).current_velocity
+        times = [*(one[keys[0]].t for one in past), sent]
+        velocity = travel.arrived(
+            microseconds(np.array([*map(instant, times)])),
+            np.vstack([known, reported.current_velocity]),
+            microseconds(np.array([instant(at)])),
+        )
+        return replace(reported, current_velocity=velocity)
 
     def _is_known(self, sample: Sample, key: str, t: datetime) -> bool:
         """Whether a value passed its checks and, unless every answer needs it, is fresh."""
@@ -350,11 +393,6 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         now = sample.t if state.clock is None else max(sample.t, state.clock)
         state, events = twin.step(state, sample, now)
         yield from events
-
-
-def is_usable(sample: Sample, key: str) -> bool:
-    """Whether a value may reach a model."""
-    return sample.flags[key] not in {Flag.FAIL, Flag.MISSING}
 
 
 def _fault(buoy: str, key: str, flag: int) -> str:

@@ -9,7 +9,8 @@ from jaxtyping import Float
 from seacage.conventions import YEAR
 from seacage.records import Sample, instant
 from seacage.twin._metocean import WATER_KEYS, Metocean
-from seacage.twin._twin import Twin, is_usable
+from seacage.twin._state import is_usable
+from seacage.twin._twin import Twin
 
 MINUTE_S = 60.0
 

@@ -55,7 +55,7 @@ def state_of(
         in_domain=bool(answer.in_domain[0]),
         reason=answer.reason[0],
         origin=str(twin.origin),
-        water=_water(answered.metocean),
+        water=_water(answered.at_buoy),
         bridles=_bridles(twin.cage, answer, shackle_loads(twin, memory, answered.t)),
         lines=_lines(twin, answer, damage),
         lines_reason=answer.line_reason[0],

@@ -22,11 +22,12 @@ from seacage.twin._models import Models
 from seacage.twin._parted import PartedKind, PartedLines
 from seacage.twin._provenance import Provenance
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
+from seacage.twin._travel_time import TravelTime
 
 FORMAT = "seacage twin"
 VERSION = 2
-# With what version 0.1.0 would ignore, a fault detector of other settings or a discrepancy of the
-# net's level 2: it refuses these
+# With what version 0.1.0 would ignore, a fault detector of other settings, a discrepancy of the
+# net's level 2, or a travel time of the current: it refuses these
 TUNED_VERSION = 3
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
@@ -34,7 +35,7 @@ PARTED = "parted/"  # before the line's name, in the names of what is left witho
 DISCREPANCY = "discrepancy:"  # before the names of the arrays of the shapes' errors
 _ERRORS = ("current_velocity", "ring", "rest")
 # Fields that the header has as they are
-_OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector")
+_OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector", "travel_time")
 _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
 _OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio")
@@ -90,6 +91,7 @@ class Header:
     weights: Mapping[str, float] = field(default_factory=dict[str, float])
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
+    travel_time: TravelTime = TravelTime()
 
     __pydantic_config__ = json_keys(timeouts="watch")
 
@@ -100,7 +102,8 @@ def to_parts(
     """Return a twin's settings and arrays, from its fields."""
     from pydantic import TypeAdapter
 
-    tuned = others["fault_detector"] != FaultDetectorSettings()
+    usual = FaultDetectorSettings(), TravelTime()
+    tuned = (others["fault_detector"], others["travel_time"]) != usual
     header = Header(
         format=FORMAT,
         version=TUNED_VERSION if tuned or (discrepancy and discrepancy.level > 1) else VERSION,

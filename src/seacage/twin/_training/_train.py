@@ -32,7 +32,9 @@ from seacage.twin._training._data import CageTraining, SensorTraining, Training
 from seacage.twin._training._line_levels import train_depth_ratio, train_line_level_2
 from seacage.twin._training._loads import train_line_loads
 from seacage.twin._training._parted import train_parted_lines
+from seacage.twin._training._travel_time import fit_travel_time
 from seacage.twin._training._windows import sensor_windows
+from seacage.twin._travel_time import TravelTime
 from seacage.twin._twin import Twin
 
 # For the bridles: the one with kinks, as of lines going slack, and the smooth one
@@ -64,7 +66,8 @@ def train(
     tension, of a depth sensor to the depth of its node in the reconstructed shape. A sensor
     without enough sound readings, or whose level 2 predicts no better than level 1, stays at
     level 1. The intervals are calibrated on held-out readings: a sensor's own, or for a short
-    training window those of sensors with longer ones.
+    training window those of sensors with longer ones. How long the current takes from the buoy to
+    the cage is found from sensors with at least four days of readings.
 
     Raises NonsenseError: inputs that the field's buoy or the campaign never had.
 
@@ -109,7 +112,11 @@ def train(
     if field is None:
         return level_1
     models, provenance = _with_waves(level_1.models, field), level_1.provenance
-    found = {name: _sensor_training(field, name, training) for name in sensors}
+    travel_time = level_1.travel_time
+    # Level 2 that a base has goes by the base's, and the paper's few minutes show none.
+    if not models.upper and training.choice != "paper":
+        travel_time = fit_travel_time(field, sensors, training)
+    found = {name: _sensor_training(field, name, training, travel_time) for name in sensors}
     data = CageTraining(
         models=models,
         sensors={name: one for name, one in found.items() if one is not None},
@@ -121,7 +128,7 @@ def train(
             models = models.with_level_2(name, model)
             windows[name] = replace(data.sensors[name].window, calibrated=model.spread.by)
         if name not in {**level_1.models.line_upper, **level_1.models.depth_ratio}:
-            models = _with_level_2_in_waves(models, data, field, name)
+            models = _with_level_2_in_waves(models, data, field, name, travel_time)
         report(name, done)
     provenance = replace(
         provenance,
@@ -130,7 +137,9 @@ def train(
         training_windows=windows,
     )
     buoy = base.buoy if base else field.buoy.stream
-    return replace(level_1, models=models, provenance=provenance, buoy=buoy)
+    return replace(
+        level_1, models=models, provenance=provenance, buoy=buoy, travel_time=travel_time
+    )
 
 
 def _with_waves(models: Models, field: FieldRecord) -> Models:
@@ -183,7 +192,9 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
     for name, model in twin.models.upper.items():
         if name not in field.sensors:
             continue
-        pairs = align(field, name, start=windows[name].end, mean_s=mean_s)
+        pairs = align(
+            field, name, start=windows[name].end, mean_s=mean_s, travel_time=twin.travel_time
+        )
         pairs = pairs.rows(pairs.metocean.known(models.inputs))
         if len(pairs) == 0:
             continue
@@ -320,7 +331,9 @@ def _better_kernel(
     return fitted[best], KERNELS[best]
 
 
-def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> SensorTraining | None:
+def _sensor_training(
+    field: FieldRecord, sensor: str, training: Training, travel_time: TravelTime
+) -> SensorTraining | None:
     """Return a sensor's training data; None where that is too little."""
     record = field.sensors[sensor]
     window = training_window(record, days=training.days, pause_s=training.pause_s)
@@ -328,7 +341,7 @@ def _sensor_training(field: FieldRecord, sensor: str, training: Training) -> Sen
         return None
     (start, end), paper = window, training.choice == "paper"
     mean_s = None if paper else training.mean_s
-    pairs = align(field, sensor, start=start, end=end, mean_s=mean_s)
+    pairs = align(field, sensor, start=start, end=end, mean_s=mean_s, travel_time=travel_time)
     pairs = pairs.rows(pairs.metocean.known(training.inputs))
     if paper:
         span = PAPER_WINDOW_S[next(iter(record.values))]
@@ -357,14 +370,20 @@ def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
 
 
 def _with_level_2_in_waves(
-    models: Models, data: CageTraining, field: FieldRecord, sensor: str
+    models: Models,
+    data: CageTraining,
+    field: FieldRecord,
+    sensor: str,
+    travel_time: TravelTime,
 ) -> Models:
     """Return models with level 2 in waves, if it shows a gain: of a shackle's line, or a depth."""
     own, bridles = data.sensors.get(sensor), {one.name: one.bridle for one in models.cage.shackles}
     if models.loads is None or own is None:
         return models
     windows = sensor_windows(
-        align(field, sensor, start=own.window.start, end=own.window.end),
+        align(
+            field, sensor, start=own.window.start, end=own.window.end, travel_time=travel_time
+        ),
         noise_sd=data.training.noise_sd.get(sensor),
         tn_slope=models.cage.bridles.tn_slope or math.nan,
     )

@@ -1,0 +1,103 @@
+"""Time that the water takes from the buoy to the cage."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float, Int, Shaped
+
+from seacage.conventions import InputError
+from seacage.records import Record
+from seacage.twin._metocean import Metocean
+
+SLACK = 1e-6  # water slower than this counts as this fast [m/s]
+# Samples further apart tell nothing of the current between them [s]
+LONGEST_GAP_S = 10800.0
+
+Instants = Int[np.ndarray, " row"]  # [us] since 1970
+Current = Float[np.ndarray, "row 2"]  # towards (east, north) [m/s]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TravelTime:
+    """How long a current takes from the buoy to the cage: distance over its speed, up to a limit.
+
+    It is advection by the current that the buoy measures, whatever its direction: with a long
+    distance the time is the limit in any current, as of a tide that comes later. Left out: a cage
+    that lies upstream of its buoy.
+
+    Parameters
+    ----------
+    distance_m
+        That the water takes to the cage [m]; 0 where the buoy's current is the cage's own.
+    longest_s
+        Limit in slow water [s].
+    """
+
+    distance_m: float = 0.0
+    longest_s: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not all(0.0 <= one < math.inf for one in (self.distance_m, self.longest_s)):
+            raise InputError(
+                f"TravelTime: distance_m = {self.distance_m:g} and longest_s = {self.longest_s:g} "
+                "are no travel. Give numbers of at least 0."
+            )
+
+    @property
+    def history_s(self) -> float:
+        """How far back the buoy's samples are needed [s]."""
+        return self.longest_s if self.distance_m else 0.0
+
+    def of(self, velocity: Current) -> Float[np.ndarray, " row"]:
+        """Travel time of some currents [s]."""
+        speed = np.maximum(np.linalg.norm(velocity, axis=1), SLACK)
+        return np.minimum(self.distance_m / speed, self.longest_s)
+
+    def arrived(
+        self,
+        # Of the sound samples, ascending; one at least
+        time: Int[np.ndarray, " sample"],
+        velocity: Float[np.ndarray, "sample 2"],
+        at: Instants,  # not before the first of them
+    ) -> Current:
+        """Current at the cage at some times, from the samples that the buoy had sent by then.
+
+        The newest sample says how fast the water comes. Between two samples the current is
+        straight; across a gap, and before the first sample, it is taken as the newest is.
+        """
+        newest = np.searchsorted(time, at, side="right") - 1
+        travel = np.rint(1e6 * self.of(velocity[newest])).astype(np.int64)
+        left = np.minimum(at - travel, time[newest])
+        before = np.searchsorted(time, left, side="right") - 1
+        after = np.minimum(before + 1, newest)
+        step = np.maximum(time[after] - time[before], 1)
+        share = ((left - time[before]) / step)[:, None]
+        between = (1.0 - share) * velocity[before] + share * velocity[after]
+        known = (before >= 0) & (before < newest) & (step <= 1e6 * LONGEST_GAP_S)
+        return np.where(known[:, None], between, velocity[newest])
+
+    def water_at(self, buoy: Record, time: Shaped[np.ndarray, " t"]) -> Metocean:
+        """Water at the cage at some times, from what a buoy had reported by then.
+
+        Waves are those of the newest sample, and all is NaN before the first or where the newest
+        value failed its checks.
+        """
+        rows = np.searchsorted(buoy.time, time, side="right") - 1
+        reported = Metocean.of_record(buoy)
+        water = reported.rows(rows)
+        sound = np.isfinite(reported.current_velocity).all(axis=1)
+        known = (rows >= 0) & np.isfinite(water.current_velocity).all(axis=1)
+        velocity = np.full((len(rows), 2), np.nan)
+        if known.any():
+            velocity[known] = self.arrived(
+                microseconds(buoy.time[sound]),
+                reported.current_velocity[sound],
+                microseconds(time[known]),
+            )
+        return replace(water, current_velocity=velocity)
+
+
+def microseconds(time: Shaped[np.ndarray, " t"]) -> Instants:
+    """Whole microseconds since 1970."""
+    return time.astype("datetime64[us]").astype(np.int64)
