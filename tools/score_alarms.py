@@ -120,9 +120,7 @@ def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     columns = [twin.sensor_names.index(name) for name in names]
     time = field.sensors[names[0]].time
     time = time[time >= field.buoy.time[0] + np.timedelta64(int(SCORED_FROM * DAY), "s")]
-    water = Metocean.of_record(field.buoy).rows(
-        np.searchsorted(field.buoy.time, time, side="right") - 1
-    )
+    water = twin.travel_time.water_at(field.buoy, time)
     answer = twin.predict(water)
     known = answer.valid & answer.in_domain
     read = np.column_stack([values_at(field.sensors[name], time) for name in names])

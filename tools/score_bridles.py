@@ -16,7 +16,7 @@ from _family_fields import field_of, options_for, scored_times, share_by_third, 
 
 from seacage.cage import Cage
 from seacage.records import FieldRecord, read_campaign
-from seacage.twin import Metocean, Training, Twin, train
+from seacage.twin import Training, Twin, train
 
 EXTRA = "extra-"
 """Before the names of the shackles that the twin does not see."""
@@ -71,8 +71,7 @@ def _field(cage: Cage, number: int, given: argparse.Namespace) -> tuple[FieldRec
 def _score(cage: Cage, twin: Twin, truth: FieldRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Whether each interval of level 1 holds the tension, the load and the width, by time."""
     time = scored_times(truth.buoy)
-    rows = np.searchsorted(truth.buoy.time, time)
-    answer = twin.predict(Metocean.of_record(truth.buoy).rows(rows))
+    answer = twin.predict(twin.travel_time.water_at(truth.buoy, time))
     true = np.full(answer.bridle_low.shape, np.nan)
     for shackle in cage.shackles:
         true[:, shackle.bridle] = values_at(truth.sensors[shackle.name], time)

@@ -30,7 +30,7 @@ from seacage.campaigns._virtual_field._responses import (
 )
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.records import Record, read_campaign
-from seacage.twin import Metocean, Training, Twin, train
+from seacage.twin import Training, Twin, train
 
 EVERY = 12  # half hours of those scored
 ABOVE = 1000.0  # m, added to all coordinates, which the responses hold above zero
@@ -67,8 +67,7 @@ def _score(given: argparse.Namespace, number: int) -> Mapping[str, np.ndarray]:
     time = scored_times(buoy)[::EVERY]
     hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
     true = _true_nets(base.cage, hidden, buoy, number, time, given.out / f"{water}-{number}")
-    seen = Metocean.of_record(buoy).rows(np.searchsorted(buoy.time, time))
-    low, best = base.predict(seen), twin.predict(seen)
+    low, best = (one.predict(one.travel_time.water_at(buoy, time)) for one in (base, twin))
     volume = base.cage.volume(true) / twin.models.still_volume
     error, of_low = true - best.node_position, true - low.node_position
     assert twin.models.net is not None  # three depth sensors trained for 25 days

@@ -32,7 +32,7 @@ from seacage.studies._paper._sensor_baselines import (
     TWIN,
     predict_by_sensor_baselines,
 )
-from seacage.twin import Metocean, Training, Twin, train
+from seacage.twin import Training, Twin, train
 
 TRAINING = Training(restarts=1)
 BASELINES = ("low fidelity", *SENSOR_BASELINES)
@@ -69,8 +69,7 @@ def _scores(cage: Cage, base: Twin, field: VirtualField) -> Iterator[Score]:
     record, truth = field.record, field.truth
     twin = train(cage, None, record, base=base, training=TRAINING)
     time = scored_times(truth.buoy)
-    held = np.searchsorted(record.buoy.time, time, side="right") - 1
-    water = Metocean.of_record(record.buoy).rows(held)
+    water = twin.travel_time.water_at(record.buoy, time)
     answer = twin.predict(water)
     for column, name in enumerate(twin.sensor_names):
         true = values_at(truth.sensors[name], time)

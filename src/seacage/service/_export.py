@@ -5,10 +5,9 @@ import io
 import json
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import version
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,7 +15,7 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import InputError, Result, Rows
+from seacage.conventions import InputError, Result
 from seacage.ocean import SeaState
 from seacage.records import KEYS, Record
 from seacage.twin import Answer, Twin, interval_reason
@@ -27,8 +26,6 @@ if TYPE_CHECKING:
     from seacage.dynamics import Response
 
 BLOCK = 512  # rows that are answered and written at once; the shapes of more would crowd the memory
-# How the names of those fields of an answer end that are the same in all rows
-_SAME_IN_ALL_ROWS = ("_names", "_units", "_kinds", "_level", "_calibrated")
 _DOOR_UNITS = {"N": ("kN", 1e-3), "m": ("m", 1.0)}
 _ENDS = {"": "mean", "_lower": "95 %, lower", "_upper": "95 %, upper"}
 Column = list[Any]
@@ -66,32 +63,17 @@ def check_form(path: Path) -> None:
         raise InputError(f"{path} ends in no form that is known. End it in {', '.join(_FORMS)}.")
 
 
-def replay_in_blocks(twin: Twin, buoy: Record) -> Iterator[Replayed]:
-    """Answer a buoy's record block by block; at least one, which may be empty."""
+def replay_in_blocks(
+    twin: Twin, buoy: Record, *, among: Record | None = None
+) -> Iterator[Replayed]:
+    """Answer a buoy's record block by block; at least one, which may be empty.
+
+    ``among``: a record with these rows and those before them; None for the rows alone.
+    """
     for first in range(0, max(len(buoy), 1), BLOCK):
         some = buoy.rows(slice(first, first + BLOCK))
-        answer = twin.predict_record(some)
+        answer = twin.predict_record(some, among=buoy if among is None else among)
         yield Replayed(buoy=some, answer=answer, cage=twin.cage, origin=str(twin.origin))
-
-
-def join_answers(answers: list[Answer]) -> Answer:
-    """Put the rows of several answers of one twin, at least one, into one answer."""
-    rows = {
-        one.name: _join([getattr(answer, one.name) for answer in answers])
-        for one in fields(Answer)
-        if not one.name.endswith(_SAME_IN_ALL_ROWS)
-    }
-    return replace(answers[0], **rows)
-
-
-def _join(parts: list[Any]) -> Any:
-    if parts[0] is None:
-        return None
-    if isinstance(parts[0], Rows):
-        return parts[0].joined(*parts)
-    if isinstance(parts[0], np.ndarray):
-        return np.concatenate(parts)
-    return tuple(chain.from_iterable(parts))
 
 
 class Output(NamedTuple):

@@ -8,7 +8,7 @@ import numpy as np
 from seacage.figures import Comparison, density_figure, series_figure, write_figure
 from seacage.records import FieldRecord
 from seacage.studies._page import write_scores
-from seacage.studies._sensor_scores import Readings, SensorScore, compare, score_sensor
+from seacage.studies._sensor_scores import Answers, Readings, SensorScore, compare, score_sensor
 from seacage.studies._split import unseen
 from seacage.twin import Twin
 
@@ -30,7 +30,7 @@ def score_record(
     Raises InputError: a sensor of the record has no held-out day.
     """
     judging = unseen(field, twin.provenance.training_windows)
-    readings = compare(twin.predict_record(field.buoy), judging)
+    readings = compare(Answers.of(twin, field.buoy), judging)
     scores = tuple(score_sensor(one, seed=seed) for one in readings.values())
     if out is not None:
         _write(Path(out), scores, readings)

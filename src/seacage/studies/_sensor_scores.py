@@ -1,5 +1,6 @@
 """How well a twin says what a sensor reads."""
 
+import math
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -7,9 +8,9 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import InputError, Origin, Rows
-from seacage.records import FieldRecord
+from seacage.records import FieldRecord, Record
 from seacage.surrogates import block_bootstrap, block_means, coverage, crps, mae
-from seacage.twin import Answer, align
+from seacage.twin import Answer, TravelTime, Twin, align
 
 MEAN_S = 600.0  # scores are given raw and on means of this length [s]
 # Readings teach as means of this length, and the twin's intervals are of such means [s]
@@ -18,7 +19,8 @@ MINUTE_S = 60.0
 _DRAWS = 1000
 _LEAST_READINGS = 100
 _LEAST_BLOCKS = 8
-_HOUR = np.timedelta64(1, "h")
+_HOUR, _MINUTE = np.timedelta64(1, "h"), np.timedelta64(1, "m")
+_BLOCK = 512  # rows answered at once; the shapes of more would crowd the memory
 # A sensor's unit inside, and the one that people read with what it is multiplied by
 PEOPLE = {"m": ("m", 1.0), "N": ("kN", 1e-3)}
 
@@ -121,16 +123,32 @@ class SensorScore:
         return (self.raw.low_bias > 0.0) == (self.unit == "m")
 
 
-def compare(answer: Answer, field: FieldRecord) -> dict[str, Readings]:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answers:
+    """A twin's answers to a buoy's record, each in force until the next."""
+
+    time: Shaped[np.ndarray, " t"]  # UTC
+    answer: Answer  # without the nodes
+
+    @classmethod
+    def of(cls, twin: Twin, buoy: Record) -> Self:
+        """Answer to each reading, and each minute where the current takes time to the cage."""
+        rows = _each_minute(buoy, twin.travel_time) if twin.travel_time.history_s else buoy
+        blocks = [rows.rows(slice(one, one + _BLOCK)) for one in range(0, len(rows), _BLOCK)]
+        answers = (twin.predict_record(one, among=buoy).without_nodes() for one in blocks or [rows])
+        return cls(time=rows.time, answer=Answer.join(*answers))
+
+
+def compare(answers: Answers, field: FieldRecord) -> dict[str, Readings]:
     """Every sound reading of a field record beside a twin's prediction of it.
 
     The buoy's last sample holds until the next; where it was unsound or too old there is no
     number, and the reading is not scored. Sensors that the twin does not know are left out.
 
-    ``answer``: of the twin, one row for each row of the field record's buoy.
+    ``answers``: to the field record's buoy.
     """
-    known = [name for name in answer.sensor_names if name in field.sensors]
-    return {name: _compare(answer, field, name) for name in known}
+    known = [name for name in answers.answer.sensor_names if name in field.sensors]
+    return {name: _compare(answers, field, name) for name in known}
 
 
 def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None) -> SensorScore:
@@ -168,11 +186,21 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
     )
 
 
-def _compare(answer: Answer, field: FieldRecord, sensor: str) -> Readings:
+def _each_minute(buoy: Record, travel: TravelTime) -> Record:
+    """Readings held from minute to minute, until the current of the last has arrived."""
+    last = buoy.time[-1] + np.timedelta64(math.ceil(travel.history_s), "s")
+    minutes = np.arange(buoy.time[0].astype("datetime64[m]"), last + _MINUTE, _MINUTE)
+    time = np.union1d(buoy.time, minutes[minutes > buoy.time[0]])
+    held = np.searchsorted(buoy.time, time, side="right") - 1
+    return replace(buoy.rows(held), time=time)
+
+
+def _compare(answers: Answers, field: FieldRecord, sensor: str) -> Readings:
+    answer = answers.answer
     column = answer.sensor_names.index(sensor)
     unit, scale = PEOPLE[answer.sensor_units[column]]
     pairs = align(field, sensor)
-    word = np.searchsorted(field.buoy.time, pairs.time, side="right") - 1
+    word = np.searchsorted(answers.time, pairs.time, side="right") - 1
     valid = answer.valid[word]
     if np.sum(valid) < _LEAST_READINGS:
         raise InputError(

@@ -41,6 +41,7 @@ from seacage.twin._training import (
     train,
     update,
 )
+from seacage.twin._travel_time import TravelTime
 from seacage.twin._twin import Twin, replay
 from seacage.twin._wear import damage_of_minutes
 
@@ -85,6 +86,7 @@ __all__ = [
     "TabulatedTwin",
     "Training",
     "TrainingWindow",
+    "TravelTime",
     "Twin",
     "TwinState",
     "Windows",

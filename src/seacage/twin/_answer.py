@@ -1,16 +1,21 @@
 """A twin's answer: loads, depths and shape of a cage, with intervals and validity."""
 
-from dataclasses import dataclass, replace
-from typing import Self
+from dataclasses import dataclass, fields, replace
+from itertools import chain
+from typing import Any, Self
 
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
+from seacage.conventions import Rows
 from seacage.surrogates import Loads, Prediction
 
 Interval = tuple[Float[np.ndarray, "case output"], Float[np.ndarray, "case output"]]
 PerNode = Float[np.ndarray, "case node 3"]
 INTERVAL_SD = 1.96  # half the width of an interval, in standard deviations; it holds 95 %
+
+# How the names of those fields end that are the same in all rows
+SAME_IN_ALL_ROWS = ("_names", "_units", "_kinds", "_level", "_calibrated")
 
 # Why an answer of level 1 has no interval
 NO_INTERVAL = "No sensor has trained level 2: how far the simulation is from the sea is not known."
@@ -118,6 +123,27 @@ class Answer:
     def __len__(self) -> int:
         return len(self.valid)
 
+    @classmethod
+    def join(cls, *answers: Self) -> Self:
+        """All rows of several answers of one twin, one after another."""
+        rows = {
+            one.name: _join([getattr(answer, one.name) for answer in answers])
+            for one in fields(cls)
+            if not one.name.endswith(SAME_IN_ALL_ROWS)
+        }
+        return replace(answers[0], **rows)
+
+    def without_nodes(self) -> Self:
+        """Return the same without where the nodes are, which is most of its memory."""
+        rows = len(self)
+        return replace(
+            self,
+            node_position=np.empty((rows, 0, 3)),
+            node_sigma=np.empty((rows, 0)),
+            node_std=np.empty((rows, 0, 3)),
+            node_motion=None,
+        )
+
     def widened(
         self, *, bridle: Float[np.ndarray, " line"], sensor: Float[np.ndarray, " sensor"]
     ) -> Self:
@@ -167,6 +193,16 @@ class Answer:
 def interval_reason(*, known: bool) -> str | None:
     """Why an answer has no interval; None where one is known."""
     return None if known else NO_INTERVAL
+
+
+def _join(parts: list[Any]) -> Any:
+    if parts[0] is None:
+        return None
+    if isinstance(parts[0], Rows):
+        return parts[0].joined(*parts)
+    if isinstance(parts[0], np.ndarray):
+        return np.concatenate(parts)
+    return tuple(chain.from_iterable(parts))
 
 
 def _interval(prediction: Prediction, known: Bool[np.ndarray, " output"]) -> Interval:

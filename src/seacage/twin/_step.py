@@ -64,9 +64,7 @@ def forget(
 ) -> TwinState:
     """Forget samples and amendments that are no longer needed."""
     streams = {
-        name: trim(
-            stream, _horizon(state, now, history_s.get(name, 0.0)), disorder_s=disorder_s
-        )
+        name: trim(stream, _horizon(state, now, history_s.get(name, 0.0)), disorder_s=disorder_s)
         for name, stream in state.streams.items()
     }
     amendments = tuple(one for one in state.amendments if one.t > now - ADAPTATION_BLOCK)

@@ -54,7 +54,7 @@ class TravelTime:
         speed = np.maximum(np.linalg.norm(velocity, axis=1), SLACK)
         return np.minimum(self.distance_m / speed, self.longest_s)
 
-    def arrived(
+    def current_at(
         self,
         # Of the sound samples, ascending; one at least
         time: Int[np.ndarray, " sample"],
@@ -90,7 +90,7 @@ class TravelTime:
         known = (rows >= 0) & np.isfinite(water.current_velocity).all(axis=1)
         velocity = np.full((len(rows), 2), np.nan)
         if known.any():
-            velocity[known] = self.arrived(
+            velocity[known] = self.current_at(
                 microseconds(buoy.time[sound]),
                 reported.current_velocity[sound],
                 microseconds(time[known]),

@@ -78,7 +78,7 @@ class Twin:
     timeouts: StreamTimeouts = field(default_factory=StreamTimeouts)
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     discrepancy: Discrepancy | None = None
-    travel_time: TravelTime = TravelTime()
+    travel_time: TravelTime = field(default_factory=TravelTime)
 
     @classmethod
     def read(cls, folder: str | Path, *, key: bytes | None = None) -> Self:
@@ -350,10 +350,10 @@ class Twin:
                 f"{duration_text(limit_s)} is the limit."
             )
         reported = Metocean.from_columns(columns, 1)
-        water = reported if trouble else self._arrived(state, reported, t)
+        water = reported if trouble else self._water_at_cage(state, reported, t)
         return Reading(metocean=water, reported=reported, age_s=age_s, trouble=trouble)
 
-    def _arrived(self, state: TwinState, reported: Metocean, t: datetime) -> Metocean:
+    def _water_at_cage(self, state: TwinState, reported: Metocean, t: datetime) -> Metocean:
         """Water at the cage, whose current left the buoy a while ago.
 
         It is found anew with each current that the buoy sends, and each minute.
@@ -368,7 +368,7 @@ class Twin:
         columns = {key: np.array([one[key].values[key] for one in past]) for key in keys}
         known = Metocean.from_columns(columns, len(past)).current_velocity
         times = [*(one[keys[0]].t for one in past), sent]
-        velocity = travel.arrived(
+        velocity = travel.current_at(
             microseconds(np.array([*map(instant, times)])),
             np.vstack([known, reported.current_velocity]),
             microseconds(np.array([instant(at)])),

@@ -11,9 +11,8 @@ from seacage.cage import Cage, mooring_lines
 from seacage.conventions import Origin
 from seacage.ocean import SeaState
 from seacage.records import FieldRecord, Record, Sample
-from seacage.service._export import join_answers
 from seacage.service._live._answers import state_of
-from seacage.twin import Answered, Metocean, Training, Twin, representative_lines, train
+from seacage.twin import Answer, Answered, Metocean, Training, Twin, representative_lines, train
 from seacage.twin._alarms._alarm import AlarmInput
 from seacage.twin._alarms._conditions import alarm_inputs
 from seacage.twin._training._loads import line_symmetry
@@ -255,7 +254,7 @@ def test_a_cage_with_one_long_bridle_has_no_images():
 def test_answers_of_several_blocks_join_with_their_lines():
     seas = [replace(SEA, current_speed=speed) for speed in (0.1, 0.3, 0.5)]
     whole = twin().predict(seas)
-    joined = join_answers([twin().predict(seas[:2]), twin().predict(seas[2:])])
+    joined = Answer.join(twin().predict(seas[:2]), twin().predict(seas[2:]))
     assert whole.line is not None
     assert joined.line is not None
     assert (joined.line_names, joined.line_reason) == (whole.line_names, whole.line_reason)

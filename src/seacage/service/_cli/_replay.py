@@ -91,17 +91,17 @@ def _answer(record: Path, folder: Path, out: list[Path], *, batched: bool) -> No
 
 def _step_through(twin: "Twin", buoy: "Record", progress: "Progress") -> "Answer":
     """Step through a record as a live service would; the same answers as in blocks."""
-    from seacage.service._export import join_answers
     from seacage.service._live._past import answer_in
+    from seacage.twin import Answer
 
-    state, answers = twin.start(), list["Answer"]()
+    state, answers = twin.start(), list[Answer]()
     for done, sample in enumerate(buoy.samples(), start=1):
         received = replace(sample, stream=twin.buoy)
         state, events = twin.step(state, received, sample.t)
         answers.append(answer_in(events).answer)  # each of a record's times is new
         if done % 50 == 0 or done == len(buoy):
             progress("replay", done, len(buoy))
-    return join_answers(answers)
+    return Answer.join(*answers)
 
 
 def _send(record: Path, to: str, cage: str, token: str, speed: float | None) -> None:

@@ -94,13 +94,14 @@ def train(
     lines = twin.models.line_upper
     report(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
-        | {"level": levels, "points": counts}
+        | {"level": levels, "points": counts, "travel_time": asdict(twin.travel_time)}
         | {"calibrated": {name: window.calibrated for name, window in windows.items()}}
         | {"parted": {one.line: [one.learned, one.simulated] for one in kinds}}
         | {"line_loads": {name: asdict(one) for name, one in lines.items()}},
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
+            ("Travel time", _travel_time(twin)),
             *(
                 (f"Without {one.line}", f"{one.learned} of {one.simulated} simulations")
                 for one in kinds
@@ -112,6 +113,14 @@ def train(
             ),
         ],
     )
+
+
+def _travel_time(twin: "Twin") -> str:
+    travel = twin.travel_time
+    if not travel.distance_m:
+        return f"none found from {twin.buoy} to the cage"
+    limit = f"{travel.longest_s / 60.0:g} min at most"
+    return f"{travel.distance_m:g} m from {twin.buoy} to the cage, at the current's speed, {limit}"
 
 
 def _stores(folders: list[Path]) -> list[Path]:

@@ -29,7 +29,7 @@ from seacage.service._http._dependencies import (
     refusal,
 )
 from seacage.service._live._cage import LiveCage
-from seacage.service._live._past import buoy_record
+from seacage.service._live._past import buoy_record, buoy_samples_before
 from seacage.service._schemas._base import EXAMPLE_T
 
 _PIECE = 1 << 16  # of a file, sent at once [bytes]
@@ -104,7 +104,9 @@ def _history(
     samples = live.store.samples(
         live.name, stream=twin.buoy, start=start, end=end, limit=limit, newest=True
     )
-    return _begin(replay_in_blocks(twin, buoy_record(twin, samples)))
+    sent = buoy_samples_before(twin, live.store, live.name, samples)
+    rows, among = (buoy_record(twin, some) for some in (samples, sent))
+    return _begin(replay_in_blocks(twin, rows, among=among))
 
 
 def _begin(parts: Iterator[_Part]) -> Iterator[_Part]:

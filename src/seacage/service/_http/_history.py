@@ -10,10 +10,10 @@ from jaxtyping import Float
 
 from seacage.conventions import Flag
 from seacage.records import Sample
-from seacage.service._export import join_answers, replay_in_blocks
+from seacage.service._export import replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._clock import floor_time
-from seacage.service._live._past import buoy_record
+from seacage.service._live._past import buoy_record, buoy_samples_around, buoy_samples_before
 from seacage.service._schemas._samples import AggregateOut
 from seacage.service._schemas._state import History, Measured
 from seacage.service._store._aggregates import WIDTHS_S
@@ -41,27 +41,15 @@ def history_between(
     read = span.readings(twin.buoy, READ_LIMIT + 1)
     if len(read) > READ_LIMIT:
         few = span.telling_readings(read[0])
-        thinned = True
+        sent, thinned = buoy_samples_around(twin, store, cage, few), True
     else:
         once = list({sample.t: sample for sample in read}.values())  # of one time the last counts
         few = [once[row] for row in telling(_speeds(once), limit)]
-        thinned = len(few) < len(once)
-    buoy = buoy_record(twin, few)
+        sent, thinned = buoy_samples_before(twin, store, cage, once), len(few) < len(once)
+    buoy, among = buoy_record(twin, few), buoy_record(twin, sent)
     measured = {sensor: span.measurements(sensor) for sensor in twin.sensor_names}
-    answers = [_without_nodes(one.answer) for one in replay_in_blocks(twin, buoy)]
-    return history_of(buoy, join_answers(answers), measured, thinned=thinned)
-
-
-def _without_nodes(answer: Answer) -> Answer:
-    """Drop where the nodes were, which no history shows, and which is most of its memory."""
-    rows = len(answer.valid)
-    return replace(
-        answer,
-        node_position=np.empty((rows, 0, 3)),
-        node_sigma=np.empty((rows, 0)),
-        node_std=np.empty((rows, 0, 3)),
-        node_motion=None,
-    )
+    answers = [one.answer.without_nodes() for one in replay_in_blocks(twin, buoy, among=among)]
+    return history_of(buoy, Answer.join(*answers), measured, thinned=thinned)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,9 +13,19 @@ from seacage.records import Amendment, Record, Sample, instant
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._store._adaptations import Adaptation
 from seacage.service._store._store import Store
-from seacage.twin import ADAPTATION_BLOCK, Answered, Event, Twin, TwinState, adapted_at, block_begin
+from seacage.twin import (
+    ADAPTATION_BLOCK,
+    Answered,
+    Event,
+    Metocean,
+    Twin,
+    TwinState,
+    adapted_at,
+    block_begin,
+)
 
 _MOST = 1_000_000  # samples of a stream in the minutes that a twin remembers
+_NEIGHBOURS = 4  # samples on each side of a time, of which one is sound at least
 _INSTANT = timedelta(microseconds=1)
 _log = structlog.get_logger(__name__)
 
@@ -88,14 +98,16 @@ class Past:
     def _memory_at(self, at: datetime, *, kept: Adaptation | None, until: datetime) -> TwinState:
         """Put together what the twin remembers at a time, its intervals adapted to some blocks."""
         twin, begin = self.twin, until - ADAPTATION_BLOCK
+        left = begin - timedelta(seconds=twin.travel_time.history_s)
         # With those a little ahead: they are there already, and govern when their time comes.
         end = at + timedelta(seconds=twin.timeouts.future_s) + _INSTANT
         read = partial(self.store.samples, self.cage, newest=True, withdrawn=False, known_at=at)
-        samples = self.store.newest_of_each(self.cage, twin.buoy, at=begin - _INSTANT)
+        samples = self.store.newest_of_each(self.cage, twin.buoy, at=left - _INSTANT)
         for stream in streams_of(twin):
             if stream != twin.buoy:
                 samples += read(stream=stream, end=begin, limit=1)
-            samples += read(stream=stream, start=begin, end=end, limit=_MOST)
+            start = left if stream == twin.buoy else begin
+            samples += read(stream=stream, start=start, end=end, limit=_MOST)
         try:
             state = twin.start(kept.factors if kept else None, until=until)
         except InputError as error:
@@ -110,6 +122,37 @@ class Past:
             for stream in streams_of(self.twin)
         )
         return min((samples[0].t for samples in found if samples), default=None)
+
+
+def buoy_samples_before(
+    twin: Twin, store: Store, cage: str, samples: Sequence[Sample]
+) -> list[Sample]:
+    """The buoy's samples whose current was on its way when some of its samples came, and these.
+
+    ``samples``: all of a span, in time order.
+    """
+    if not samples or not twin.travel_time.history_s:
+        return list(samples)
+    start, end = samples[0].t - timedelta(seconds=twin.travel_time.history_s), samples[0].t
+    read = partial(store.samples, cage, stream=twin.buoy)
+    last = read(end=start, newest=True, limit=1)
+    return [*last, *read(start=start, end=end, limit=_MOST), *samples]
+
+
+def buoy_samples_around(
+    twin: Twin, store: Store, cage: str, samples: Sequence[Sample]
+) -> list[Sample]:
+    """The same of samples that are far apart: those around the time when the current left."""
+    if not samples or not twin.travel_time.history_s:
+        return list(samples)
+    velocity = Metocean.of_record(buoy_record(twin, samples)).current_velocity
+    travel, found = np.nan_to_num(twin.travel_time.of(velocity)), {one.t: one for one in samples}
+    read = partial(store.samples, cage, stream=twin.buoy, limit=_NEIGHBOURS)
+    for t, seconds in zip(list(found), travel.tolist(), strict=True):
+        left = t - timedelta(seconds=seconds)
+        for one in (*read(end=left, newest=True), *read(start=left)):
+            found.setdefault(one.t, one)
+    return [found[t] for t in sorted(found)]
 
 
 def buoy_record(twin: Twin, samples: Sequence[Sample]) -> Record:

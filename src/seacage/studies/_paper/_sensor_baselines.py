@@ -34,7 +34,7 @@ def score_sensor_baselines(
 ) -> Iterator[BaselineScore]:
     """Score the twin and the baselines at each sensor that has level 2."""
     for name in twin.models.upper:
-        after = align(held_out, name, mean_s=MEAN_S)
+        after = align(held_out, name, mean_s=MEAN_S, travel_time=twin.travel_time)
         answer = twin.predict(after.metocean)
         column = answer.sensor_names.index(name)
         unit, factor = PEOPLE[answer.sensor_units[column]]
@@ -63,7 +63,14 @@ def predict_by_sensor_baselines(
     ``teaching``, ``training``: the record and the settings that the twin was trained with.
     """
     window = twin.provenance.training_windows[name]
-    pairs = align(teaching, name, start=window.start, end=window.end, mean_s=training.mean_s)
+    pairs = align(
+        teaching,
+        name,
+        start=window.start,
+        end=window.end,
+        mean_s=training.mean_s,
+        travel_time=twin.travel_time,
+    )
     pairs = training.select(pairs)
     x, there = (one.features(twin.models.inputs) for one in (pairs.metocean, water))
     lower, restarts, value = twin.models.lower(name), training.restarts, pairs.value

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Shaped
 
 from seacage.studies._chain import Chain, Recipe
-from seacage.studies._sensor_scores import Readings, SensorScore, compare, score_sensor
+from seacage.studies._sensor_scores import Answers, Readings, SensorScore, compare, score_sensor
 from seacage.studies._split import split
 from seacage.twin import Training, Twin
 
@@ -71,8 +71,8 @@ def compare_ways(chain: Chain, ways: Mapping[str, Training]) -> ScoredWays:
     _, truth = split(chain.truth, teaching_days=days)
     truth = replace(truth, buoy=judging.buoy)  # as reported, gaps and all
     twins = [Twin.read(chain.ensure_twin(training)) for training in ways.values()]
-    answers = [twin.predict_record(chain.field.buoy) for twin in twins]
-    compared = [compare(answer, judging) for answer in answers]
+    answers = [Answers.of(twin, chain.field.buoy) for twin in twins]
+    compared = [compare(each, judging) for each in answers]
     exact = compare(answers[0], truth)
     common = {
         name: reduce(np.intersect1d, (one[name].time for one in compared)) for name in compared[0]

@@ -124,7 +124,7 @@ def score_wave_loads(
     slope = twin.cage.bridles.tn_slope or math.nan
     for shackle in twin.cage.shackles:
         parts = [
-            sensor_windows(align(one, shackle.name), tn_slope=slope)
+            sensor_windows(align(one, shackle.name, travel_time=twin.travel_time), tn_slope=slope)
             for one in (teaching, held_out)
             if shackle.name in one.sensors
         ]

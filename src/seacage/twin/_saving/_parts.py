@@ -91,7 +91,7 @@ class Header:
     weights: Mapping[str, float] = field(default_factory=dict[str, float])
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
-    travel_time: TravelTime = TravelTime()
+    travel_time: TravelTime = field(default_factory=TravelTime)
 
     __pydantic_config__ = json_keys(timeouts="watch")
 

@@ -381,9 +381,7 @@ def _with_level_2_in_waves(
     if models.loads is None or own is None:
         return models
     windows = sensor_windows(
-        align(
-            field, sensor, start=own.window.start, end=own.window.end, travel_time=travel_time
-        ),
+        align(field, sensor, start=own.window.start, end=own.window.end, travel_time=travel_time),
         noise_sd=data.training.noise_sd.get(sensor),
         tn_slope=models.cage.bridles.tn_slope or math.nan,
     )

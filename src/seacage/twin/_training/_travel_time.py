@@ -8,58 +8,67 @@ from itertools import product
 import numpy as np
 from jaxtyping import Bool, Float, Int
 
-from seacage.records import FieldRecord, Record
-from seacage.surrogates import is_gain
+from seacage.records import FieldRecord
+from seacage.surrogates import block_means, is_gain
 from seacage.twin._correction._sensor import LEAST_DAYS
 from seacage.twin._metocean import Metocean
 from seacage.twin._pairs import Pairs, align, training_window
 from seacage.twin._training._data import Training
-from seacage.twin._travel_time import TravelTime
+from seacage.twin._travel_time import TravelTime, microseconds
 
 MEAN_S = 600.0  # over which readings are averaged [s]
+# Times about the middle of a mean over which its current is averaged [us]
+WITHIN_US = np.array([-180, 0, 180]) * 1_000_000
 LEAST_MEANS = 144  # of a sensor, which are a day's
 # Those that are compared: distances [m] and limits [s]
 DISTANCES_M = (*range(50, 1000, 50), *range(1000, 3001, 250))
-LIMITS_S = (900.0, 1800.0, 3600.0)
+LIMITS_S = (900.0, 1800.0, 2700.0, 3600.0)
 HARMONICS = (2, 3, 4)  # of the current's direction, beside the vector and its products
-RIDGE = 1e-6  # of the regression, over the variance of each column
 
 PerPair = Float[np.ndarray, " pair"]
 
 
-def fit_travel_time(
-    field: FieldRecord, sensors: Iterable[str], training: Training
-) -> TravelTime:
+def fit_travel_time(field: FieldRecord, sensors: Iterable[str], training: Training) -> TravelTime:
     """Find the travel time with which the buoy's currents explain most of the readings.
 
     Each sensor's ten-minute means are regressed on the current that has arrived, its square and
     harmonics of its direction, and every other day is held out in turn. The travel time with the
-    least errors is taken, over all sensors with at least four days, if they are less than without
-    one and not by chance.
+    least errors is taken, over all sensors with at least four days, if the one that either half of
+    the days would take makes the errors of the other half less, and not by chance.
     """
     series = [one for name in sensors if (one := _Series.of(field, name, training)) is not None]
     if not series:
         return TravelTime()
+    candidates = [
+        TravelTime(distance_m=distance, longest_s=longest)
+        for distance, longest in ((0.0, 0.0), *product(DISTANCES_M, LIMITS_S))
+    ]
+    day = np.concatenate([one.day for one in series])
+    errors = np.stack([np.concatenate([one.errors(each) for one in series]) for each in candidates])
+    sensor = np.repeat(np.arange(len(series)), [len(one.day) for one in series])
+    half = day % 2
 
-    def loss(travel: TravelTime) -> float:
-        return sum(np.log(np.mean(one.errors(travel) ** 2)) for one in series)
+    def best(rows: Bool[np.ndarray, " pair"]) -> int:
+        squares = [
+            np.mean(errors[:, rows & (sensor == k)] ** 2, axis=1) for k in range(len(series))
+        ]
+        return int(np.argmin(np.sum(np.log(squares), axis=0)))
 
-    candidates = product(DISTANCES_M, LIMITS_S)
-    best = min((TravelTime(distance_m=one, longest_s=most) for one, most in candidates), key=loss)
-    better = list[PerPair]()
-    for one in series:
-        before, after = (np.abs(one.errors(each)) for each in (TravelTime(), best))
-        better.append((before - after) / np.mean(before))
-    days = np.concatenate([one.day for one in series])
-    return best if is_gain(np.concatenate(better), days) else TravelTime()
+    chosen = errors[[best(half == 1), best(half == 0)]][half, np.arange(len(day))]
+    of_sensor, sizes = block_means(day * len(series) + sensor, np.abs(errors[0]), np.abs(chosen))
+    better = np.log(sizes[0] / sizes[1])
+    everywhere = np.ones(len(day), dtype=bool)
+    return candidates[best(everywhere) if is_gain(better, of_sensor // len(series)) else 0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Series:
-    """Ten-minute means of one sensor, and the buoy whose currents explain them."""
+    """Ten-minute means of one sensor, and the buoy's currents that explain them."""
 
     pairs: Pairs
-    buoy: Record
+    # The buoy's sound samples: times [us] and currents [m/s]
+    time: Int[np.ndarray, " sample"]
+    velocity: Float[np.ndarray, "sample 2"]
 
     @classmethod
     def of(cls, field: FieldRecord, sensor: str, training: Training) -> "_Series | None":
@@ -69,7 +78,11 @@ class _Series:
         if window is None or window[1] - window[0] < timedelta(days=LEAST_DAYS):
             return None
         pairs = align(field, sensor, start=window[0], end=window[1], mean_s=MEAN_S)
-        return cls(pairs=pairs, buoy=field.buoy) if len(pairs) >= LEAST_MEANS else None
+        if len(pairs) < LEAST_MEANS or np.ptp(pairs.value) == 0.0:
+            return None
+        velocity = Metocean.of_record(field.buoy).current_velocity
+        sound = np.isfinite(velocity).all(axis=1)
+        return cls(pairs=pairs, time=microseconds(field.buoy.time[sound]), velocity=velocity[sound])
 
     @property
     def day(self) -> Int[np.ndarray, " pair"]:
@@ -78,26 +91,23 @@ class _Series:
 
     def errors(self, travel: TravelTime) -> PerPair:
         """Errors of the readings of days that are held out."""
-        x = _columns(travel.water_at(self.buoy, self.pairs.time))
-        odd = self.day % 2 == 1
-        return np.where(odd, self._errors(x, ~odd), self._errors(x, odd))
-
-    def _errors(self, x: Float[np.ndarray, "pair column"], rows: Bool[np.ndarray, " pair"]) -> PerPair:
-        """Errors at all readings of a regression on some of them."""
-        centre, mean = x[rows].mean(axis=0), self.pairs.value[rows].mean()
-        inner, above = x[rows] - centre, self.pairs.value[rows] - mean
-        square = inner.T @ inner
-        square[np.diag_indices_from(square)] *= 1.0 + RIDGE
-        slope = np.linalg.lstsq(square, inner.T @ above, rcond=None)[0]
-        return self.pairs.value - mean - (x - centre) @ slope
+        at = np.maximum(microseconds(self.pairs.time) + WITHIN_US[:, None], self.time[0])
+        arrived = travel.current_at(self.time, self.velocity, at.ravel())
+        x = _columns(arrived).reshape(*at.shape, -1).mean(axis=0)
+        value, odd = self.pairs.value, self.day % 2 == 1
+        errors = np.empty_like(value)
+        for out in (odd, ~odd):
+            found = np.linalg.lstsq(x[~out], value[~out], rcond=None)[0]
+            errors[out] = value[out] - x[out] @ found
+        return errors
 
 
-def _columns(water: Metocean) -> Float[np.ndarray, "pair column"]:
-    east, north = water.current_velocity.T
+def _columns(velocity: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, "row column"]:
+    east, north = velocity.T
     speed, direction = np.hypot(east, north), np.arctan2(north, east)
     turns = [turn(k * direction) for k in HARMONICS for turn in (np.cos, np.sin)]
     return np.column_stack(
-        [east, north, speed, speed * east, speed * north, speed**2]
+        [np.ones_like(speed), east, north, speed, speed * east, speed * north, speed**2]
         + [speed * one for one in turns]
         + [speed**2 * one for one in turns]
     )

@@ -82,7 +82,9 @@ def blocks_seen(fed: Running, monkeypatch, size):
     seen, twin = [], type(fed.cage.twin)
     answer = twin.predict_record
     monkeypatch.setattr(
-        twin, "predict_record", lambda self, rows: seen.append(len(rows)) or answer(self, rows)
+        twin,
+        "predict_record",
+        lambda self, rows, **o: seen.append(len(rows)) or answer(self, rows, **o),
     )
     return seen
 

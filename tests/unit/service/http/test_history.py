@@ -1,3 +1,4 @@
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -6,9 +7,11 @@ import pytest
 from seacage.conventions import Flag
 from seacage.ocean import SeaState
 from seacage.records import QualityState, Sample, check_sample
-from seacage.service._http._history import _without_nodes, history_between, telling
+from seacage.service._http._history import history_between, telling
+from seacage.service._live._past import Past
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
+from seacage.twin import TravelTime
 from wavy import wavy_twin
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
@@ -186,7 +189,29 @@ def test_a_speed_that_failed_its_checks_is_no_storm(twin, store):
 
 
 def test_a_span_of_a_twin_in_waves_keeps_no_node():
-    answer = _without_nodes(wavy_twin().predict(SeaState(current_speed=0.4, current_to=40.0)))
+    answer = wavy_twin().predict(SeaState(current_speed=0.4, current_to=40.0)).without_nodes()
     assert answer.node_motion is None
     assert answer.line is not None
     assert answer.node_position.size == answer.node_sigma.size == answer.node_std.size == 0
+
+
+@pytest.mark.parametrize("many", [False, True])
+@pytest.mark.parametrize("limit", [6, 24])
+def test_water_that_takes_its_time_is_in_a_history_as_it_was_in_the_state(
+    twin, store, monkeypatch, limit, many
+):
+    if many:
+        monkeypatch.setattr("seacage.service._http._history.READ_LIMIT", 5)
+    late = replace(twin, travel_time=TravelTime(distance_m=400.0, longest_s=1800.0))
+    begin, end = NOON + STORM - timedelta(hours=1), NOON + STORM + timedelta(hours=2)
+    past = history(late, store, limit, start=begin, end=end)
+    folded = Past(twin=late, store=store, cage="ace")
+    for t, mean in zip(past.t, past.bridles["bridle-1"].mean, strict=True):
+        _, answered = folded.state_at(t)
+        assert mean == pytest.approx(answered.answer.bridle_tension.mean[0, 0] / 1e3, abs=2e-3)
+    # The storm is at the buoy at first, and then at the cage.
+    answered = {m: folded.state_at(NOON + STORM + timedelta(minutes=m))[1] for m in (0, 9, 12, 20)}
+    speed = {m: np.hypot(*one.metocean.current_velocity[0]) for m, one in answered.items()}
+    assert speed[0] < 0.5 < speed[9]
+    assert np.hypot(*answered[0].at_buoy.current_velocity[0]) == pytest.approx(0.7)
+    assert speed[20] > 0.4

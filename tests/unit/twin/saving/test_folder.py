@@ -9,7 +9,7 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.testing import stand_in_seas, stand_in_twin
-from seacage.twin import FaultDetectorSettings, Twin, read_key
+from seacage.twin import FaultDetectorSettings, TravelTime, Twin, read_key
 
 
 @pytest.fixture(scope="module")
@@ -60,6 +60,13 @@ def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(wri
         for folder in (written, tmp_path / "t")
     ]
     assert versions == [2, 3]
+
+
+def test_the_travel_time_of_the_current_is_read_back_and_version_0_1_0_refuses_it(tmp_path):
+    travel = TravelTime(distance_m=400.0, longest_s=1800.0)
+    replace(stand_in_twin(), travel_time=travel).write(tmp_path / "twin")
+    assert Twin.read(tmp_path / "twin").travel_time == travel
+    assert json.loads((tmp_path / "twin" / "model.json").read_text())["version"] == 3
 
 
 def test_a_twin_saved_without_settings_of_the_fault_detector_has_the_defaults(copy):
