@@ -65,13 +65,13 @@ def read_results(
     net, positions = _read_net(folder, cage), folder / "positions.nc"
     table = read_table(folder / "cases.csv", PLAIN)
     labels = {"case": _labels(table, "case"), "node": net.names, "axis": ("x", "y", "z")}
-    seas, lines = _read_seas(table), _read_lines(table, mooring_lines(cage, anchored=True))
+    lines = _read_lines(table, mooring_lines(cage, anchored=True))
     if len(lines.loads) > 1 and not (duration and 0.0 < duration < math.inf):
         raise RecordError(
             f"{table.path}: its {', '.join(lines.loads)} need the time that they are over. Give "
             "the duration of each case without its spin-up, in s (--duration)."
         )
-    position = _read_positions(positions, labels)
+    seas, position = _read_seas(table), _read_positions(positions, labels)
     mean = position["node_position"]
     _check_collar(positions, net, mean, labels["case"])
     return CampaignRecord(
