@@ -70,8 +70,9 @@ def write_cases(
     lines = campaign.line_names or Cage.from_toml(campaign.cage_toml).bridle_names
     for line in random.permutation(len(lines)).tolist():
         for statistic in ("mean", "std", "maximum", "mpm_3h", "expected_3h", "damage_equivalent"):
-            if statistic in loads and np.isfinite(values := loads[statistic][:, line]).all():
-                columns[f"{lines[line]}_{statistic}_{unit}"] = (values * UNITS[unit]).tolist()
+            if statistic in loads and not np.isnan(values := loads[statistic][:, line]).all():
+                cells = ["" if np.isnan(one) else one * UNITS[unit] for one in values.tolist()]
+                columns[f"{lines[line]}_{statistic}_{unit}"] = cells
     write(path, tuple(columns), list(zip(*columns.values(), strict=True)))
 
 

@@ -32,6 +32,8 @@ EDGE_COLUMNS = ("node_1", "node_2")
 WAVES = ("hs_m", "tp_s", "wave_from_deg")
 WEAR = "damage_equivalent"  # which lines without a T-N curve lack
 STATISTICS = ("mean", "std", "maximum", "mpm_3h", "expected_3h", WEAR)
+# Empty where a line, slack nearly all the time, had too few peaks: the case's own maximum counts
+OF_PEAKS = ("mpm_3h", "expected_3h")
 UNITS = {"n": 1.0, "kn": 1e3}  # [N]
 BRIDLE = "bridle"
 STRETCHED = 0.1  # largest change of the collar's circumference: a pipe keeps its length [-]
@@ -177,7 +179,8 @@ def _read_lines(table: Table, known: MooringLines) -> _Lines:
     for name in table.header:
         if name != "case" and name not in SEA_COLUMNS:
             line, statistic, factor = _line_column(table, name, known.names)
-            columns[line, statistic] = factor * numbers(table, name)
+            blank = statistic in OF_PEAKS
+            columns[line, statistic] = factor * numbers(table, name, blank=blank)
     bridles = [name for name, kind in zip(known.names, known.kinds, strict=True) if kind == BRIDLE]
     has = {line for line, _ in columns}
     names = tuple(name for name in known.names if name in has or name in bridles)
@@ -194,6 +197,8 @@ def _read_lines(table: Table, known: MooringLines) -> _Lines:
         one: np.column_stack([columns.get((line, one), unknown) for line in names])
         for one in (*there, *(() if WEAR in there or len(there) == 1 else (WEAR,)))
     }
+    if empty := [one for one in OF_PEAKS if one in loads and np.isnan(loads[one]).all()]:
+        raise RecordError(f"{table.path}: {empty[0]} is empty everywhere. Leave its columns out.")
     return _Lines(names=names, kinds=known.named(names).kinds, loads=loads)
 
 

@@ -189,6 +189,7 @@ def import_(
     title = f"Results of {simulator} for cage {described.name!r}"
     write_campaign(found, out, title=title, plan=folder.name, method="import")
     simulated = Cage.from_toml(found.cage_toml)
+    _options.warn(simulated.warnings)
     own = simulated.mesh == described.mesh
     mesh = (
         f"{simulated.rings} rings of {simulated.spokes} nodes, {'as' if own else 'not'} in {cage}"
