@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from jaxtyping import Float
@@ -64,54 +64,41 @@ def read_results(
     duration
         That each case's statistics are over; None where there are only means [s].
     """
-    net, positions = _read_net(folder, cage), folder / "positions.nc"
-    table = read_table(folder / "cases.csv", PLAIN)
-    labels = {"case": _labels(table, "case"), "node": net.names, "axis": ("x", "y", "z")}
-    lines = _read_lines(table, mooring_lines(cage, anchored=True))
-    if len(lines.loads) > 1 and not (duration and 0.0 < duration < math.inf):
+    simulated, names, rest = _read_net(folder, cage)
+    table, known = read_table(folder / "cases.csv", PLAIN), mooring_lines(cage, anchored=True)
+    labels = {"case": _labels(table, "case"), "node": names, "axis": ("x", "y", "z")}
+    lines, loads = _read_lines(table, known)
+    if len(loads) > 1 and not (duration and 0.0 < duration < math.inf):
         raise RecordError(
-            f"{table.path}: its {', '.join(lines.loads)} need the time that they are over. Give "
-            "the duration of each case without its spin-up, in s (--duration)."
+            f"{table.path}: its {', '.join(loads)} need the time that they are over. Give the "
+            "duration of each case without its spin-up, in s (--duration)."
         )
-    seas, position = _read_seas(table), _read_positions(positions, labels)
-    mean = position["node_position"]
-    _check_collar(positions, net, mean, labels["case"])
+    seas, position = _read_seas(table), _read_positions(folder / "positions.nc", labels)
+    mean, collar = position["node_position"], simulated.ring_nodes(0)
+    _check_collar(folder / "positions.nc", rest[collar], mean[:, collar], labels["case"])
     return CampaignRecord(
-        cage_toml=net.cage.to_toml(),
+        cage_toml=simulated.to_toml(),
         seas=seas,
-        bridle_tension=lines.loads["mean"][:, : cage.bridle_count],
+        bridle_tension=loads["mean"][:, : cage.bridle_count],
         net_force=np.full((len(seas), 3), np.nan),
-        volume=net.cage.volume(mean),
+        volume=simulated.volume(mean),
         result=np.full(len(seas), Result.CONVERGED.value),
         law=simulator,
         seed=0,
         version=version("seacage"),
-        duration=duration if duration and len(lines.loads) > 1 else math.nan,
-        line_names=lines.names,
-        line_kinds=lines.kinds,
-        lines=lines.loads,
+        duration=duration if duration and len(loads) > 1 else math.nan,
+        line_names=lines,
+        line_kinds=known.named(lines).kinds,
+        lines=loads,
         simulator=simulator,
         **position,
     )
 
 
-class _Net(NamedTuple):
-    """A net in the order of its cage's nodes."""
-
-    cage: Cage
-    names: tuple[str, ...]
-    rest: Float[np.ndarray, "node 3"]
-
-
-class _Lines(NamedTuple):
-    """Lines in the order of the cage's, and their loads by statistic."""
-
-    names: tuple[str, ...]
-    kinds: tuple[str, ...]
-    loads: dict[str, Float[np.ndarray, "case line"]]
-
-
-def _read_net(folder: Path, cage: Cage) -> _Net:
+def _read_net(
+    folder: Path, cage: Cage
+) -> tuple[Cage, tuple[str, ...], Float[np.ndarray, "node 3"]]:
+    """The cage with the net's mesh, and the names and places of its nodes at rest [m]."""
     nodes, edges = (read_table(folder / f"{one}.csv", PLAIN) for one in ("nodes", "edges"))
     for table, columns in ((nodes, NODE_COLUMNS), (edges, EDGE_COLUMNS)):
         if set(table.header) != set(columns):
@@ -135,7 +122,7 @@ def _read_net(folder: Path, cage: Cage) -> _Net:
         matched, order = match_net(cage, names, rest, joined)
     except InputError as error:
         raise RecordError(f"{nodes.path}, {edges.path.name}: {error}") from error
-    return _Net(cage=matched, names=tuple(names[node] for node in order.tolist()), rest=rest[order])
+    return matched, tuple(str(one) for one in np.array(names)[order]), rest[order]
 
 
 def _labels(table: Table, column: str) -> tuple[str, ...]:
@@ -173,8 +160,10 @@ def _read_seas(table: Table) -> tuple[SeaState, ...]:
     return sea_states(table)
 
 
-def _read_lines(table: Table, known: MooringLines) -> _Lines:
-    """Loads of lines by columns such as ``bridle-1_mean_n``, each line with the same statistics."""
+def _read_lines(
+    table: Table, known: MooringLines
+) -> tuple[tuple[str, ...], dict[str, Float[np.ndarray, "case line"]]]:
+    """Lines that have columns such as ``bridle-1_mean_n``, and their loads by statistic [N]."""
     columns = dict[tuple[str, str], Float[np.ndarray, " case"]]()
     for name in table.header:
         if name != "case" and name not in SEA_COLUMNS:
@@ -199,7 +188,7 @@ def _read_lines(table: Table, known: MooringLines) -> _Lines:
     }
     if empty := [one for one in OF_PEAKS if one in loads and np.isnan(loads[one]).all()]:
         raise RecordError(f"{table.path}: {empty[0]} is empty everywhere. Leave its columns out.")
-    return _Lines(names=names, kinds=known.named(names).kinds, loads=loads)
+    return names, loads
 
 
 def _line_column(table: Table, name: str, lines: Sequence[str]) -> tuple[str, str, float]:
@@ -208,11 +197,11 @@ def _line_column(table: Table, name: str, lines: Sequence[str]) -> tuple[str, st
     if found and found["line"] in lines and found["unit"] in UNITS:
         return found["line"], found["what"], UNITS[found["unit"]]
     why = "is neither case, a column of the sea state nor a tension"
-    if found:
+    if found and found["line"] in lines:
         why = f"has the unit {found['unit']!r}"
-        if found["line"] not in lines:
-            why = f"names a line that the cage's file has not ({', '.join(lines)})"
-    elif re.search(rf"_({'|'.join(STATISTICS)})$", name):
+    elif found:
+        why = f"names a line that the cage's file has not ({', '.join(lines)})"
+    elif name.endswith(STATISTICS):
         why = "has no unit"
     elif is_mean_period(name):
         why = f"is no sea state's. {NO_MEAN_PERIOD}"
@@ -279,13 +268,14 @@ def _in_order(
 
 
 def _check_collar(
-    path: Path, net: _Net, mean: Float[np.ndarray, "case node 3"], cases: Sequence[str]
+    path: Path,
+    rest: Float[np.ndarray, "spoke 3"],
+    mean: Float[np.ndarray, "case spoke 3"],
+    cases: Sequence[str],
 ) -> None:
     """Refuse positions of another unit, or in another order than is known."""
-    ring = net.cage.ring_nodes(0)
     around = [
-        np.linalg.norm(one - np.roll(one, 1, axis=-2), axis=-1).sum(axis=-1)
-        for one in (net.rest[ring], mean[:, ring])
+        np.linalg.norm(one - np.roll(one, 1, axis=-2), axis=-1).sum(axis=-1) for one in (rest, mean)
     ]
     off = np.abs(around[1] / around[0] - 1.0)
     if (off > STRETCHED).any():
