@@ -46,6 +46,7 @@ def match_net(
     cage, order
         Node k of the cage's mesh is ``order[k]`` of the net.
     """
+    edges = np.unique(np.sort(edges, axis=1), axis=0)
     rings = _rings(name, rest, edges)
     _check_place(cage, rest, rings[0])
     first = cage.spoke_angles[0] - np.deg2rad(cage.heading)

@@ -186,6 +186,10 @@ def _read_lines(
         one: np.column_stack([columns.get((line, one), unknown) for line in names])
         for one in (*there, *(() if WEAR in there or len(there) == 1 else (WEAR,)))
     }
+    if loads["mean"].mean() < 0.0:
+        raise RecordError(
+            f"{table.path}: tensions are negative in the mean. Let a pull be positive."
+        )
     if empty := [one for one in OF_PEAKS if one in loads and np.isnan(loads[one]).all()]:
         raise RecordError(f"{table.path}: {empty[0]} is empty everywhere. Leave its columns out.")
     return names, loads
