@@ -27,24 +27,12 @@ def match_net(
     where each of its nodes is nearest to the one that takes its place; else rings and spokes are
     put where the net has them.
 
+    ``name``: of each node of the net, for messages. ``rest``: in still water [m]. ``edges``: pairs
+    of nodes that are joined; diagonals of panels may be among them. Node k of the cage's mesh is
+    ``order[k]`` of the net.
+
     Raises InputError: a net that is not made of rings of equally many nodes around a tip, or that
     lies or measures otherwise than the cage.
-
-    Parameters
-    ----------
-    cage
-        As its file describes it.
-    name
-        Of each node, for messages.
-    rest
-        The net in still water [m].
-    edges
-        Pairs of nodes that are joined; diagonals of panels may be among them.
-
-    Returns
-    -------
-    cage, order
-        Node k of the cage's mesh is ``order[k]`` of the net.
     """
     edges = np.unique(np.sort(edges, axis=1), axis=0)
     rings = _rings(name, rest, edges)

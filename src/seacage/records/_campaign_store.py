@@ -154,8 +154,7 @@ def fill_campaign(
     """
     if path.exists():
         raise RecordError(f"{path}: there is something already. Give another name, or delete it.")
-    known = _variables(in_time=True, quantiles=True, moment=True, lines=True)
-    known |= {"residual": _RESIDUAL, "mooring_seed": _MOORING_SEED}
+    known = _variables(in_time=True, quantiles=True, moment=False, lines=True)
     variables = {name: known[name] for name in values}
     size = {
         dim: length
@@ -191,7 +190,7 @@ def _make(
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(unborn)
         # After the metadata was gathered, for they will go again
-        if "second_moment" in variables and "second_moment" not in values:
+        if "second_moment" in variables:
             _create_block_moments(group, size["block"], size["coordinate"])
         _move(unborn, path)
     finally:

@@ -17,7 +17,6 @@ from jaxtyping import Float
 
 from seacage.cage import Cage, MooringLines, match_net, mooring_lines
 from seacage.conventions import InputError, RecordError, Result
-from seacage.ocean import SeaState
 from seacage.records._campaign import CampaignRecord
 from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._readers._cf import open_foreign
@@ -29,7 +28,6 @@ if TYPE_CHECKING:
 
 NODE_COLUMNS = ("name", "x_m", "y_m", "z_m")
 EDGE_COLUMNS = ("node_1", "node_2")
-WAVES = ("hs_m", "tp_s", "wave_from_deg")
 WEAR = "damage_equivalent"  # which lines without a T-N curve lack
 STATISTICS = ("mean", "std", "maximum", "mpm_3h", "expected_3h", WEAR)
 # Empty where a line, slack nearly all the time, had too few peaks: the case's own maximum counts
@@ -46,23 +44,15 @@ def read_results(
 ) -> CampaignRecord:
     """A campaign from what another simulator computed of a cage.
 
-    The folder has ``nodes.csv`` and ``edges.csv`` (the net at rest), ``cases.csv`` (the sea state
-    and the tensions of each case) and ``positions.nc`` (the net's mean shape in each case), as
-    docs/simulators.md says. The campaign's cage has the mesh of that net. What is not in them is
-    not made up: the load on the netting is NaN, and statistics that no column has are left out.
+    The campaign's cage has the mesh of that program's net. What is not in the files is not made up:
+    the load on the netting is NaN, and statistics that no column has are left out.
+
+    ``folder``: has ``nodes.csv``, ``edges.csv``, ``cases.csv`` and ``positions.nc``, as
+    docs/simulators.md says. ``cage``: that was simulated; columns name its lines. ``simulator``:
+    name and version, for what is trained from it. ``duration``: that each case's statistics are
+    over; None where there are only means [s].
 
     Raises RecordError: a file, a column, a unit or a number is missing, or what it says cannot be.
-
-    Parameters
-    ----------
-    folder
-        Of the four files.
-    cage
-        That was simulated; its names of lines are those of the columns.
-    simulator
-        Name and version, for what is trained from it.
-    duration
-        That each case's statistics are over; None where there are only means [s].
     """
     simulated, names, rest = _read_net(folder, cage)
     table, known = read_table(folder / "cases.csv", PLAIN), mooring_lines(cage, anchored=True)
@@ -73,7 +63,8 @@ def read_results(
             f"{table.path}: its {', '.join(loads)} need the time that they are over. Give the "
             "duration of each case without its spin-up, in s (--duration)."
         )
-    seas, position = _read_seas(table), _read_positions(folder / "positions.nc", labels)
+    seas = sea_states(table, assumed=False)
+    position = _read_positions(folder / "positions.nc", labels)
     mean, collar = position["node_position"], simulated.ring_nodes(0)
     _check_collar(folder / "positions.nc", rest[collar], mean[:, collar], labels["case"])
     return CampaignRecord(
@@ -138,26 +129,6 @@ def _labels(table: Table, column: str) -> tuple[str, ...]:
             "before. Give every row a name of its own."
         )
     return names
-
-
-def _read_seas(table: Table) -> tuple[SeaState, ...]:
-    """Sea states, without any number that is not in the table."""
-    waves = [key for key in WAVES if key in table.header]
-    if waves and len(waves) < len(WAVES):
-        raise RecordError(
-            f"{table.path}: it has {' and '.join(waves)} alone. Give {', '.join(WAVES)}, or none "
-            "of them where no case has waves."
-        )
-    if waves:
-        calm = numbers(table, "hs_m") == 0.0
-        for key in WAVES[1:]:
-            lacking = np.isnan(numbers(table, key, blank=True)) & ~calm
-            if lacking.any():
-                raise RecordError(
-                    f"{table.path}, line {table.lines[int(np.argmax(lacking))]}: {key} is empty "
-                    "and hs_m is not 0. Give the waves that were simulated, or leave the row out."
-                )
-    return sea_states(table)
 
 
 def _read_lines(

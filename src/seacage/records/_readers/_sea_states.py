@@ -20,6 +20,7 @@ SEA_COLUMNS = {
 }
 """Names of ``SeaState`` by column."""
 
+_WAVES = ("hs", "tp", "wave_from")
 _REQUIRED = ("current_speed_m_s", "current_to_deg")
 
 
@@ -34,8 +35,11 @@ def read_sea_states(path: Path) -> tuple[SeaState, ...]:
     return sea_states(table)
 
 
-def sea_states(table: Table) -> tuple[SeaState, ...]:
+def sea_states(table: Table, *, assumed: bool = True) -> tuple[SeaState, ...]:
     """The sea state of each row; an empty hs_m or wave_from_deg is 0, an empty tp_s 5 sqrt(hs_m).
+
+    ``assumed``: whether waves may lack numbers that are taken so; else only where hs_m is 0, or
+    where no column is of waves.
 
     Raises RecordError: a column or a number is missing, or a sea state that cannot be.
     """
@@ -49,6 +53,13 @@ def sea_states(table: Table) -> tuple[SeaState, ...]:
     seas: list[SeaState] = []
     for row, line in enumerate(table.lines):
         given = {name: float(column[row]) for name, column in columns.items()}
+        waves = [given.get(name, math.nan) for name in _WAVES]
+        some = waves[0] != 0.0 and any(map(math.isnan, waves)) and columns.keys() & {*_WAVES}
+        if some and not assumed:
+            raise RecordError(
+                f"{table.path}, line {line}: its waves lack hs_m, tp_s or wave_from_deg. Give what "
+                "was simulated, hs_m = 0 without waves, or leave the row out."
+            )
         try:
             seas.append(SeaState(**{n: one for n, one in given.items() if not math.isnan(one)}))
         except InputError as error:

@@ -190,16 +190,13 @@ def import_(
     write_campaign(found, out, title=title, plan=folder.name, method="import")
     simulated = Cage.from_toml(found.cage_toml)
     _options.warn(simulated.warnings)
-    own = simulated.mesh == described.mesh
-    mesh = (
-        f"{simulated.rings} rings of {simulated.spokes} nodes, {'as' if own else 'not'} in {cage}"
-    )
+    own, rings = simulated.mesh == described.mesh, f"{simulated.rings} rings of {simulated.spokes}"
     report(
         {"written": str(out), "cases": len(found), "lines": list(found.line_names)}
         | {"nodes": simulated.node_count, "mesh_of_cage": own, "statistics": list(found.lines)},
         rows=[
             ("Written", f"{out}: {len(found)} cases of {simulator}"),
-            ("Net", mesh),
+            ("Net", f"{rings} nodes, {'as' if own else 'not'} in {cage}"),
             ("Lines", f"{len(found.line_names)}: {', '.join(found.lines)}"),
         ],
     )
