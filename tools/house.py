@@ -17,7 +17,7 @@ MODULES = {"twin": 20, "surrogates": 11, "studies": 15, "dynamics": 4, "service/
 CEILINGS = {
     "names with a word of our own": 0,
     "prose with a word of our own": 0,
-    "functions named by a participle": 36,
+    "functions named by a participle": 35,
     "classes of the rename table": 0,
     "classes twice in a room": 0,
     "modules too many in a folder": 0,
