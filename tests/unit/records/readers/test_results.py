@@ -169,6 +169,35 @@ def test_what_cannot_be_meant_is_refused_in_a_sentence_that_says_where(tmp_path,
         read_results(folder, CAGE, simulator="Other 1")
 
 
+def test_edges_may_be_listed_twice_and_with_diagonals(tmp_path):
+    campaign = stand_in_campaign(CAGE, stand_in_seas(3))
+    folder = write_results(tmp_path, campaign)
+    _, *rows = (folder / "edges.csv").read_text().splitlines()
+    names = written_names(folder, CAGE)
+    again = [",".join(reversed(row.split(","))) for row in rows[:40]]
+    diagonals = [f"{names[CAGE.node(2, s)]},{names[CAGE.node(3, s + 1)]}" for s in range(8)]
+    with (folder / "edges.csv").open("a") as file:
+        file.write("\n".join([*again, *diagonals]) + "\n")
+    found = read_results(folder, CAGE, simulator="Other 1")
+    np.testing.assert_array_equal(found.node_position, campaign.node_position)
+
+
+def written_names(folder, cage):
+    """Names of a cage's nodes in its own order, by their places."""
+    with (folder / "nodes.csv").open() as file:
+        rows = [line.split(",") for line in file.read().splitlines()[1:]]
+    places = np.array([[float(cell) for cell in row[1:]] for row in rows])
+    away = np.linalg.norm(cage.design_position[:, None] - places, axis=2)
+    return [rows[at][0] for at in away.argmin(axis=1)]
+
+
+def test_a_pull_is_positive(tmp_path):
+    pushed = stand_in_campaign(CAGE, stand_in_seas(3))
+    pushed = replace(pushed, bridle_tension=-pushed.bridle_tension)
+    with pytest.raises(RecordError, match="tensions are negative in the mean"):
+        read_results(write_results(tmp_path, pushed), CAGE, simulator="Other 1")
+
+
 def test_waves_are_given_as_they_were_simulated(tmp_path):
     sea = replace(stand_in_seas(2)[1], hs=1.0, tp=7.25, wave_from=200.0)
     folder = write_results(tmp_path, stand_in_campaign(CAGE, [sea] * 3))
