@@ -50,6 +50,7 @@ def test_renamed_and_shuffled_results_train_the_twin_that_the_campaign_trains(tm
     assert [twin.provenance.law for twin in twins] == ["stand-in", "Other 1"]
 
 
+@pytest.mark.slow
 def test_a_net_of_another_mesh_trains_a_twin_whose_sensors_hang_on_it(tmp_path):
     cage = Cage.named("ace").altered(mesh={"spokes": 12, "ring_depths_m": [0.0, 5.0, 15.0, 23.0]})
     campaign = stand_in_campaign(cage, stand_in_seas(60))

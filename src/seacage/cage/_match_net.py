@@ -1,6 +1,7 @@
 """A net of another program: its nodes in the order of rings × spokes and a tip."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import scipy
@@ -8,10 +9,12 @@ from jaxtyping import Float, Int
 
 from seacage.cage import _graph
 from seacage.cage._cage import Cage
+from seacage.cage._parts import Mesh
 from seacage.conventions import InputError
 
 # Of the collar's radius: how far its nodes' mean radius may be off, and its centre from x = y = 0
 OTHER_RADIUS, OFF_CENTRE = 0.2, 0.1
+SAME_SPOKES = 0.02  # of a sector: how far spokes may be from where a mesh has them by itself
 
 Node3 = Float[np.ndarray, "node 3"]
 Nodes = Int[np.ndarray, " node"]
@@ -106,9 +109,7 @@ def _by_bearing(
 
     Returns the collar's angles too, from east [rad].
     """
-    centre = rest[rings[0], :2].mean(axis=0)
-    whole, east = 2.0 * np.pi, rest[:, :2] - centre
-    angle = np.arctan2(east[:, 1], east[:, 0])
+    whole, angle = 2.0 * np.pi, np.arctan2(rest[:, 1], rest[:, 0])
     collar = angle[rings[0]]
     nearest = collar[np.argmin(np.abs((collar - first + np.pi) % whole - np.pi))]
     turned = np.sort((collar - nearest) % whole)
@@ -123,13 +124,15 @@ def _with_mesh(cage: Cage, rest: Node3, angles: Float[np.ndarray, " spoke"]) -> 
     below = rest[0 : len(angles), 2].mean() - rest[:, 2]
     depths = below[:-1].reshape(-1, len(angles)).mean(axis=1).round(3)
     cylinder = 1 + int(np.argmin(np.abs(depths[1:] - cage.mesh.cylinder_depth)))
-    bearings = (90.0 - np.rad2deg(angles) - cage.heading) % 360.0
-    return cage.altered(
-        mesh={
-            "spokes": len(angles),
-            "ring_depths_m": [0.0, *depths[1:].tolist()],
-            "cylinder_depth_m": float(depths[cylinder]),
-            "tip_depth_m": float(below[-1].round(3)),
-            "spoke_bearings_deg": bearings.round(4).tolist(),
-        }
+    mesh = Mesh(
+        spokes=len(angles),
+        ring_depths=(0.0, *depths[1:].tolist()),
+        cylinder_depth=float(depths[cylinder]),
+        tip_depth=float(below[-1].round(3)),
     )
+    usual, heading = replace(cage, mesh=mesh), cage.heading
+    off = (usual.spoke_angles - np.deg2rad(heading) - angles + np.pi) % (2.0 * np.pi) - np.pi
+    if np.abs(off).max() * len(angles) < 2.0 * np.pi * SAME_SPOKES:
+        return usual
+    bearings = ((90.0 - np.rad2deg(angles) - heading) % 360.0).round(4)
+    return replace(cage, mesh=replace(mesh, spoke_bearings=tuple(bearings.tolist())))

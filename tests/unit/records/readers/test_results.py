@@ -41,14 +41,17 @@ def test_kilonewtons_are_newtons_in_the_campaign(tmp_path):
 
 
 @pytest.mark.parametrize("heading", [0.0, 25.0])
-def test_a_net_of_other_rings_and_spokes_becomes_the_mesh_of_the_cage(tmp_path, heading):
+@pytest.mark.parametrize("bearings", [None, [90.0 - 28.0 * spoke for spoke in range(12)]])
+def test_a_net_of_other_rings_and_spokes_becomes_the_mesh_of_the_cage(tmp_path, heading, bearings):
     described = replace(Cage.named("ace"), heading=heading)
     other = {"spokes": 12, "ring_depths_m": [0.0, 4.0, 14.5, 20.0, 26.0]}
+    other |= {"spoke_bearings_deg": bearings} if bearings else {}
     simulated = described.altered(mesh={**other, "cylinder_depth_m": 14.5, "tip_depth_m": 30.0})
     campaign = stand_in_campaign(simulated, stand_in_seas(5))
     found = read_results(write_results(tmp_path, campaign), described, simulator="Other 1")
     cage = Cage.from_toml(found.cage_toml)
     assert (cage.rings, cage.spokes, cage.tube_ring) == (5, 12, 2)
+    assert (cage.mesh.spoke_bearings is None) == (bearings is None)
     # Bearings are kept to 1e-4 degrees, which are 0.04 mm here.
     np.testing.assert_allclose(cage.design_position, simulated.design_position, atol=1e-4)
     np.testing.assert_array_equal(found.node_position, campaign.node_position)
