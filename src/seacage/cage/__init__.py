@@ -2,6 +2,7 @@
 
 from seacage.cage._cage import Cage, DepthSensor, Shackle
 from seacage.cage._check import Remark, cage_errors, cage_numbers, cage_remarks
+from seacage.cage._match_net import match_net
 from seacage.cage._mooring_lines import MooringLines, mooring_lines
 from seacage.cage._nearest import Nearest
 from seacage.cage._parts import (
@@ -51,5 +52,6 @@ __all__ = [
     "cage_numbers",
     "cage_or_structure",
     "cage_remarks",
+    "match_net",
     "mooring_lines",
 ]

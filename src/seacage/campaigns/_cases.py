@@ -1,6 +1,7 @@
 """Simulator of a campaign's cases, and the work of one block of them."""
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from importlib.metadata import version
@@ -59,7 +60,8 @@ class Simulator:
         Whether each case has a mooring of its own, ``Cage.drawn`` by a seed of the case. It is
         simulated alone, in pieces of a minute and more.
     parted
-        Names of lines that bear nothing; cases start from the equilibria without them.
+        Names of lines that bear nothing. Each case starts from the equilibrium without them, where
+        one is found: what happens while they part is not in it.
     """
 
     method: Literal["simulate", "settle"] = "simulate"
@@ -70,12 +72,14 @@ class Simulator:
     ramp: float = 60.0
     spin_up: float = 300.0
     time_step: float = 0.002
-    quantile_levels: tuple[float, ...] = (0.05, 0.5, 0.95)
+    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95)
     second_moment: bool = True
     draw_mooring: bool = False
-    parted: tuple[str, ...] = ()
+    parted: Sequence[str] = ()
 
     def __post_init__(self) -> None:
+        for name in ("quantile_levels", "parted"):  # hashed with the rest
+            object.__setattr__(self, name, tuple(getattr(self, name)))
         if self.method not in _BLOCK:
             raise InputError(f"Simulator: method {self.method!r} is none of {', '.join(_BLOCK)}.")
         if not self.in_time and self.law not in LAWS:

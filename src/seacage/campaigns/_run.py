@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from jaxtyping import Int
@@ -18,7 +18,7 @@ from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
-from seacage.dynamics import PHYSICS, SPRINGS, Mooring, MovingLaw
+from seacage.dynamics import PHYSICS, SPRINGS
 from seacage.records import CampaignRecord
 
 # Attributes that make two campaigns the same, and how people call them
@@ -48,18 +48,9 @@ def run_campaign(
     out: str | Path,
     *,
     workers: int | None = None,
-    law: MovingLaw = "kristiansen-faltinsen",
-    method: Literal["simulate", "settle"] = "simulate",
-    mooring: Mooring = "catenary",
-    ramp: float = 60.0,
-    spin_up: float = 300.0,
-    time_step: float = 0.002,
-    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95),
-    second_moment: bool = True,
-    draw_mooring: bool = False,
-    parted: Sequence[str] = (),
     cluster: str | None = None,
     progress: Progress | None = None,
+    **settings: Any,
 ) -> CampaignRecord:
     """Simulate a cage in every sea state of a plan, into a Zarr store that outlives a kill.
 
@@ -78,33 +69,19 @@ def run_campaign(
     workers
         Processes; None for one per available core, 1 for none beside this one. The answers
         do not depend on it.
-    law, method, mooring, ramp, spin_up, time_step, quantile_levels, second_moment, draw_mooring
-        As in ``Simulator``; "settle" takes the equilibrium in each current instead.
-    parted
-        Names of lines that bear nothing. Each case starts from the equilibrium without them, where
-        one is found: what happens while they part is not in it.
     cluster
         Address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of the
         processes. On processors of one kind the answers do not depend on it.
     progress
         Called as ("campaign", done, total) in cases, first with what was there already.
+    settings
+        Those of ``Simulator``, such as ``method="settle"``.
 
     Raises InputError: ``out`` holds another campaign, moorings are to be drawn of what states no
     uncertainty, or a line has parted that the mooring has not.
     """
-    simulator = Simulator(
-        method=method,
-        law=law,
-        mooring=mooring,
-        ramp=ramp,
-        spin_up=spin_up,
-        time_step=time_step,
-        quantile_levels=tuple(quantile_levels),
-        second_moment=second_moment,
-        draw_mooring=draw_mooring,
-        parted=tuple(parted),
-    )
-    run_share(cage, plan, out, by=simulator, workers=workers, cluster=cluster, progress=progress)
+    by = Simulator(**settings)
+    run_share(cage, plan, out, by=by, workers=workers, cluster=cluster, progress=progress)
     return records.read_campaign(out)
 
 

@@ -1,8 +1,6 @@
 """Plans: which sea states a campaign visits."""
 
-import csv
 import hashlib
-import io
 import itertools
 import json
 import math
@@ -15,6 +13,7 @@ import numpy as np
 
 from seacage.conventions import TABLE_BYTES, InputError, parse_json, read_text
 from seacage.ocean import MAX_CURRENT_SPEED, SeaState
+from seacage.records import SEA_COLUMNS, read_sea_states
 
 Range = tuple[float, float]
 
@@ -26,16 +25,6 @@ _RANGES: Mapping[str, Mapping[str, Range]] = {
 }
 # What a plan has beside its ranges
 _LIMITS: Mapping[str, Mapping[str, Any]] = {"loads": {"longest_tp": 18.0, "corner_every": 16}}
-
-_DOOR = {
-    "current_speed_m_s": "current_speed",
-    "current_to_deg": "current_to",
-    "hs_m": "hs",
-    "tp_s": "tp",
-    "wave_from_deg": "wave_from",
-}
-
-_REQUIRED = ("current_speed_m_s", "current_to_deg")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,13 +195,7 @@ class Plan:
         wave_from_deg. An empty hs_m or wave_from_deg counts as 0, an empty tp_s as
         5 sqrt(Hs).
         """
-        path = Path(path)
-        text = read_text(path, most=TABLE_BYTES).removeprefix("\ufeff")
-        try:
-            rows = list(csv.reader(io.StringIO(text, newline="")))
-        except csv.Error as error:
-            raise InputError(f"{path}: cannot be read as a CSV file ({error}).") from error
-        seas = _read_seas(rows, str(path))
+        path, seas = Path(path), read_sea_states(Path(path))
         return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)
 
     @classmethod
@@ -229,24 +212,21 @@ class Plan:
         """A plan from JSON text."""
         try:
             table = parse_json(text, "Plan")
-            seas = tuple(
-                _sea_of({_DOOR[key]: value for key, value in case.items()}, f"Plan: case {number}")
-                for number, case in enumerate(table["cases"])
-            )
+            seas = tuple(_sea_of(case, number) for number, case in enumerate(table["cases"]))
             return cls(
                 name=table["name"], seas=seas, duration=table["duration_s"], seed=table["seed"]
             )
         except (KeyError, TypeError) as error:
             raise InputError(
                 f"Plan: this is no plan ({error!r}). Expected the keys name, duration_s, seed and "
-                f"cases, each case with some of {', '.join(_DOOR)}."
+                f"cases, each case with some of {', '.join(SEA_COLUMNS)}."
             ) from error
 
     def to_json(self) -> str:
         """JSON text with the unit in every key, one case per line."""
         head = {"name": self.name, "duration_s": self.duration, "seed": self.seed}
         cases = ",\n".join(
-            json.dumps({door: getattr(sea, name) for door, name in _DOOR.items()})
+            json.dumps({door: getattr(sea, name) for door, name in SEA_COLUMNS.items()})
             for sea in self.seas
         )
         return f'{json.dumps(head)[:-1]}, "cases": [\n{cases}\n]}}\n'
@@ -257,45 +237,12 @@ class Plan:
         return hashlib.sha256(self.to_json().encode()).hexdigest()
 
 
-def _sea_of(case: Mapping[str, Any], where: str) -> SeaState:
+def _sea_of(case: Mapping[str, Any], number: int) -> SeaState:
+    given = {SEA_COLUMNS[key]: value for key, value in case.items()}
     try:
-        return SeaState(**case)
+        return SeaState(**given)
     except InputError as error:
-        raise InputError(f"{where}: {error}") from error
-
-
-def _read_seas(rows: Sequence[Sequence[str]], path: str) -> tuple[SeaState, ...]:
-    """The sea states of a table, or the first row that is none, counted as an editor does."""
-    header = [name.strip() for name in rows[0]] if rows else []
-    missing = [name for name in _REQUIRED if name not in header]
-    if missing or set(header) - set(_DOOR) or len(set(header)) < len(header):
-        raise InputError(
-            f"{path}: its columns are {', '.join(header) or 'none'}. Expected {', '.join(_DOOR)}, "
-            f"each once, with at least {' and '.join(_REQUIRED)}."
-        )
-    seas: list[SeaState] = []
-    for number, row in enumerate(rows[1:], 2):
-        if not any(value.strip() for value in row):
-            continue
-        seas.append(_sea_of(_cells(header, row, where := f"{path}, row {number}"), where))
-    return tuple(seas)
-
-
-def _cells(header: Sequence[str], row: Sequence[str], where: str) -> dict[str, float]:
-    if len(row) != len(header):
-        raise InputError(f"{where}: {len(row)} values under {len(header)} columns.")
-    given = {key: text for key, text in zip(header, row, strict=True) if text.strip()}
-    empty = [key for key in _REQUIRED if key not in given]
-    if empty:
-        raise InputError(f"{where}: {' and '.join(empty)} must not be empty.")
-    return {_DOOR[key]: _number(text, key, where) for key, text in given.items()}
-
-
-def _number(text: str, key: str, where: str) -> float:
-    try:
-        return float(text)
-    except ValueError as error:
-        raise InputError(f"{where}: {key} = {text!r} is no number.") from error
+        raise InputError(f"Plan: case {number}: {error}") from error
 
 
 def _check_seed(seed: int) -> None:

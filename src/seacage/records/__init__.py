@@ -1,7 +1,12 @@
 """Labelled measurements and simulations: their schemas, readers, checks and stores."""
 
 from seacage.records._aligned import Clock, aligned
-from seacage.records._campaign import CampaignRecord, export_campaign, read_campaign
+from seacage.records._campaign import (
+    CampaignRecord,
+    export_campaign,
+    read_campaign,
+    write_campaign,
+)
 from seacage.records._campaign_store import (
     NOT_RUN,
     campaign_results,
@@ -50,6 +55,8 @@ from seacage.records._readers._csv import check_rows, read_rows
 from seacage.records._readers._inspect import Inspection, inspect_file
 from seacage.records._readers._netcdf import write_record
 from seacage.records._readers._reader import known_map, read_map, read_record
+from seacage.records._readers._results import read_results
+from seacage.records._readers._sea_states import SEA_COLUMNS, read_sea_states
 from seacage.records._record import Record
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant, moment
@@ -63,6 +70,7 @@ __all__ = [
     "LINES",
     "NOT_RUN",
     "NO_MEAN_PERIOD",
+    "SEA_COLUMNS",
     "STATISTICS",
     "TWINES",
     "Amendment",
@@ -109,10 +117,13 @@ __all__ = [
     "read_limits",
     "read_map",
     "read_record",
+    "read_results",
     "read_rows",
+    "read_sea_states",
     "shipped_maps",
     "verdicts_on",
     "withdrawn",
+    "write_campaign",
     "write_cases",
     "write_history",
     "write_record",

@@ -16,7 +16,15 @@ from jaxtyping import Bool, Float, Int
 from seacage.conventions import Origin, RecordError, has_answer
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
-from seacage.records._campaign_store import MEAN, NOT_RUN, SEA, campaign_unsummed, not_a_campaign
+from seacage.records._campaign_store import (
+    MEAN,
+    NOT_RUN,
+    SEA,
+    SPREAD,
+    campaign_unsummed,
+    fill_campaign,
+    not_a_campaign,
+)
 from seacage.records._lines import LINES
 from seacage.records._netcdf_file import check_netcdf, write_netcdf
 
@@ -75,6 +83,7 @@ class CampaignRecord:
         default_factory=dict[str, np.ndarray]
     )
     parted: tuple[str, ...] = ()  # those that bore nothing, as they had parted
+    simulator: str | None = None  # another program whose results these are; None: seacage's own
 
     origin: ClassVar[Origin] = Origin.COMPUTED  # a campaign is always computed
     __repr__ = brief
@@ -143,7 +152,36 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         line_kinds=_words(attributes.get("line_kinds", "")),
         lines=lines,
         parted=_words(attributes.get("parted", "")),
+        simulator=attributes.get("simulator"),
         **variables,
+    )
+
+
+def write_campaign(campaign: CampaignRecord, path: Path, **attributes: str) -> None:
+    """Write a campaign of another simulator as a store that ``read_campaign`` reads.
+
+    ``attributes``: of the store, such as its title.
+
+    Raises RecordError: there is something at ``path``.
+    """
+    values: dict[str, object] = {n: [getattr(sea, n) for sea in campaign.seas] for n in SEA}
+    values |= {name: getattr(campaign, name) for name in (*MEAN, "result", *SPREAD)}
+    values |= {f"line_{name}": each for name, each in campaign.lines.items()}
+    about = {"line_names": campaign.line_names, "line_kinds": campaign.line_kinds}
+    fill_campaign(
+        path,
+        {name: np.asarray(each) for name, each in values.items() if each is not None},
+        {
+            "product_version": campaign.version,
+            "origin": campaign.origin.value,
+            "cage": campaign.cage_toml,
+            "law": campaign.law,
+            "simulator": campaign.simulator,
+            "seed": campaign.seed,
+            **({} if math.isnan(campaign.duration) else {"duration_s": campaign.duration}),
+            **{name: ", ".join(words) for name, words in about.items()},
+            **attributes,
+        },
     )
 
 

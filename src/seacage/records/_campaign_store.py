@@ -122,8 +122,6 @@ def create_campaign(
     It appears at ``path`` whole or not at all. If another process made it meanwhile, that one
     stays.
     """
-    import zarr
-
     variables = _variables(
         in_time=wave_seeds is not None,
         quantiles=bool(quantile_levels),
@@ -142,6 +140,42 @@ def create_campaign(
         given |= {f"line_{name}": getattr(mooring, name) for name in CONSTANT}
         words = {"line_names": mooring.names, "line_kinds": mooring.kinds}
         attributes = {**attributes, **{name: ", ".join(each) for name, each in words.items()}}
+    _make(path, variables, size, chunk=chunk, values=given, attributes=attributes)
+
+
+def fill_campaign(
+    path: Path,
+    values: Mapping[str, np.ndarray],  # by the names of the store's variables
+    attributes: Mapping[str, Any],
+) -> None:
+    """Make the store of a campaign whose answers are all known.
+
+    Raises RecordError: there is something at ``path``.
+    """
+    if path.exists():
+        raise RecordError(f"{path}: there is something already. Give another name, or delete it.")
+    known = _variables(in_time=True, quantiles=True, moment=False, lines=True)
+    variables = {name: known[name] for name in values}
+    size = {
+        dim: length
+        for name, variable in variables.items()
+        for dim, length in zip(variable.dims, values[name].shape, strict=True)
+    }
+    _make(path, variables, size, chunk=size, values=values, attributes=attributes)
+
+
+def _make(
+    path: Path,
+    variables: Mapping[str, Variable],
+    size: Mapping[str, int],
+    *,
+    chunk: Mapping[str, int],
+    values: Mapping[str, Any],  # of some of the variables
+    attributes: Mapping[str, Any],
+) -> None:
+    """Make a store with some of its values, beside its place, and give it its name."""
+    import zarr
+
     unborn = _beside(path, "unborn")
     try:
         unborn.mkdir(parents=True)
@@ -150,12 +184,13 @@ def create_campaign(
         )
         for name, variable in variables.items():
             _create_array(group, name, variable, size, chunk)
-            if name in given:
-                _array(unborn, name)[:] = np.array(given[name])
+            if name in values:
+                _array(unborn, name)[:] = np.array(values[name])
         with warnings.catch_warnings():  # zarr warns that other libraries may not look for this
             warnings.simplefilter("ignore")
             zarr.consolidate_metadata(unborn)
-        if second_moment:  # after the metadata was gathered, for it will go again
+        # After the metadata was gathered, for they will go again
+        if "second_moment" in variables:
             _create_block_moments(group, size["block"], size["coordinate"])
         _move(unborn, path)
     finally:

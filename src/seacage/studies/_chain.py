@@ -231,6 +231,11 @@ class Chain:
         made.truth.write(begun / "truth")
 
 
+def cases_with_answer(campaign: CampaignRecord) -> CampaignRecord:
+    """A campaign's cases that ended with an answer."""
+    return select_cases(campaign, np.flatnonzero(campaign.converged))
+
+
 def select_cases(campaign: CampaignRecord, rows: Int[np.ndarray, " row"]) -> CampaignRecord:
     """A campaign's cases of these rows; the second moment stays that of all."""
     arrays = {

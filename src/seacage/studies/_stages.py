@@ -8,12 +8,12 @@ from functools import cache
 from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Any, Literal, TypeVar
 
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
 from seacage.conventions import Progress, RecordError, no_progress
-from seacage.dynamics import PHYSICS, Law
+from seacage.dynamics import PHYSICS
 from seacage.records import CampaignRecord, read_campaign
 
 MANIFEST = "stage.json"
@@ -72,35 +72,26 @@ class Stages:
         plan: Plan,
         *,
         method: Literal["simulate", "settle"] = "settle",
-        law: Law = "kristiansen-faltinsen",
         second_moment: bool = False,
-        spin_up: float = 300.0,
+        **others: Any,
     ) -> CampaignRecord:
         """A cage in the seas of a plan, kept on disk case by case.
 
         ``stage``: its name, which the progress is called with. All others: as for ``run_campaign``.
         """
+        by = {"method": method, "second_moment": second_moment, **others}
 
         def make(begun: Path) -> None:
             run_campaign(
                 cage,
                 plan,
                 begun / "campaign.zarr",
-                method=method,
-                law=law,
-                second_moment=second_moment,
                 workers=self.workers,
-                spin_up=spin_up,
                 progress=lambda _, done, total: self.progress(stage, done, total),
+                **by,
             )
 
-        settings = {
-            "cage": cage.to_toml(),
-            "plan_sha256": plan.sha256,
-            "method": method,
-            "law": law,
-            "spin_up_s": spin_up,
-        }
+        settings = {"cage": cage.to_toml(), "plan_sha256": plan.sha256, **by}
         return read_campaign(self.ensure(stage, settings, make, rooms=SIMULATION) / "campaign.zarr")
 
 

@@ -325,7 +325,7 @@ def test_a_worker_with_another_version_refuses_to_answer(
     assert answer_block.__module__ == "seacage.campaigns._cases"  # by which name it travels
 
 
-@pytest.mark.parametrize("asks", [run_campaign, Simulator, run_command])
+@pytest.mark.parametrize("asks", [Simulator, run_command])
 def test_what_is_not_requested_is_as_in_a_single_simulation(asks: Callable[..., object]) -> None:
     def defaults(of: Callable[..., object]) -> dict[str, object]:
         return {name: one.default for name, one in inspect.signature(of).parameters.items()}

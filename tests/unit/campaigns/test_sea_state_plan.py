@@ -178,16 +178,16 @@ def test_a_table_is_a_plan_of_its_rows(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "its columns are none"),
-        ("current_speed,current_to_deg\n", "its columns are current_speed, current_to_deg"),
-        ("current_speed_m_s,hs_m\n", "at least current_speed_m_s and current_to_deg"),
-        (HEADER.replace("tp_s", "hs_m"), "each once"),
-        (HEADER + "0.3,90,1,6.5\n", "row 2: 4 values under 5 columns"),
-        (HEADER + "0.3,90,1,6.5,0\n,90,1,6.5,0\n", "row 3: current_speed_m_s must not be empty"),
-        (HEADER + "0.3,north,1,6.5,0\n", "row 2: current_to_deg = 'north' is no number"),
-        (HEADER + "\n0.3,90,3,2.1,0\n", r"row 3: SeaState: hs = 3 m with tp = 2\.1 s has steep"),
-        (HEADER + "30,90,1,6.5,0\n", r"row 2: .* 30 m/s is above 3 m/s"),
-        (HEADER, "no sea states"),
+        ("", "the file is empty"),
+        ("current_speed,current_to_deg\n1,2\n", "its columns are current_speed, current_to_deg"),
+        ("current_speed_m_s,hs_m\n1,2\n", "at least current_speed_m_s and current_to_deg"),
+        (HEADER.replace("tp_s", "hs_m"), "the column 'hs_m' twice"),
+        (HEADER + "0.3,90,1,6.5\n", "line 2: 4 cells in a table of 5 columns"),
+        (HEADER + "0.3,90,1,6.5,0\n,90,1,6.5,0\n", "line 3: current_speed_m_s = '' is no finite"),
+        (HEADER + "0.3,north,1,6.5,0\n", "line 2: current_to_deg = 'north' is no finite number"),
+        (HEADER + "\n0.3,90,3,2.1,0\n", r"line 3: SeaState: hs = 3 m with tp = 2\.1 s has steep"),
+        (HEADER + "30,90,1,6.5,0\n", r"line 2: .* 30 m/s is above 3 m/s"),
+        (HEADER, "a header and no row"),
     ],
 )
 def test_a_table_that_is_no_plan_is_refused_with_its_row(

@@ -114,10 +114,8 @@ def virtual_field(
     events or a timetable for a settled field.
     """
     if method == "simulate":
-        times = _in_time(buoy, every_s, timetable)
-        request = FieldRequest(
-            cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
-        )
+        truth = {"hidden": hidden, "seed": seed, "waves": waves, "events": events}
+        request = _request(cage, buoy, every_s=every_s, timetable=timetable, **truth)
         with _folder(kept) as folder:
             stretches = simulate_share(request, Path(folder), workers=workers, progress=progress)
             return _simulate(request, gather_truth(request, stretches))
@@ -136,37 +134,37 @@ def virtual_field_share(
     cage: Cage,
     buoy: Record,
     *,
-    hidden: TruthParameters,
-    seed: int,
     kept: str | Path,
     share: tuple[int, int],
-    waves: Record | None = None,
-    events: Sequence[Event] = (),
-    every_s: float | None = None,
-    timetable: Timetable | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
+    **field: Any,
 ) -> None:
     """Simulate every n-th stretch of a virtual field, on one of several machines perhaps.
 
     ``virtual_field`` with the same words puts the field together, and simulates what is missing.
 
-    ``cage``, ``buoy``, ``hidden``, ``seed``, ``waves``, ``events``, ``every_s``, ``timetable``,
-    ``workers``, ``progress``: as for ``virtual_field``.
+    ``cage``, ``buoy``, ``workers``, ``progress``, ``field``: as for ``virtual_field``, to which
+    also hidden, seed, waves, events, every_s and timetable are given.
     ``kept``: folder of the finished stretches.
     ``share``: which share, from 0, and of how many.
     """
-    times = _in_time(buoy, every_s, timetable)
-    request = FieldRequest(
-        cage=cage, buoy=buoy, hidden=hidden, seed=seed, waves=waves, events=events, **times
-    )
+    request = _request(cage, buoy, **field)
     simulate_share(request, Path(kept), share=share, workers=workers, progress=progress)
 
 
-def _in_time(buoy: Record, every_s: float | None, timetable: Timetable | None) -> dict[str, Any]:
-    """Times of a request's readings and stretches, as given or as usual."""
-    time = reading_times(buoy, every_s, usual_s=2.0)
-    return {"time": time, "timetable": timetable or Timetable.over(buoy)}
+def _request(
+    cage: Cage,
+    buoy: Record,
+    *,
+    every_s: float | None = None,
+    timetable: Timetable | None = None,
+    **truth: Any,
+) -> FieldRequest:
+    """A request whose readings and stretches are as given or as usual."""
+    time, timetable = reading_times(buoy, every_s, usual_s=2.0), timetable or Timetable.over(buoy)
+    truth = {"waves": None, "events": (), **truth}
+    return FieldRequest(cage=cage, buoy=buoy, time=time, timetable=timetable, **truth)
 
 
 def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:

@@ -169,8 +169,8 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
 
 
 @contextmanager
-def open_foreign(path: Path) -> "Generator[xarray.Dataset]":
-    """Open a NetCDF file that others wrote, its times as numbers.
+def open_foreign(path: Path, *, whole: bool = False) -> "Generator[xarray.Dataset]":
+    """Open a NetCDF file that others wrote, its times as numbers; ``whole`` to read all of it.
 
     Raises RecordError: no such file, or one that cannot be read, within too.
     """
@@ -179,7 +179,7 @@ def open_foreign(path: Path) -> "Generator[xarray.Dataset]":
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     try:
-        check_netcdf(path, whole=False)
+        check_netcdf(path, whole=whole)
         with xarray.open_dataset(path, engine=_engine_of(path), decode_times=False) as dataset:
             yield dataset
     except RecordError:

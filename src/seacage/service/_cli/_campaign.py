@@ -157,6 +157,51 @@ def export(store: Store, out: Annotated[Path, typer.Argument(dir_okay=False)]) -
     report({"written": str(out)}, rows=[("Written", str(out))])
 
 
+@group.command("import")
+@guard
+def import_(
+    folder: Annotated[Path, typer.Argument(exists=True, file_okay=False, metavar="DIR")],
+    out: Annotated[Path, typer.Argument(metavar="OUT")],
+    *,
+    cage: _options.CageName,
+    simulator: str,
+    duration: float | None = None,
+) -> None:
+    """Read the results of another simulator as a campaign, to train a twin from.
+
+    The twin takes their net, where it is rings of equally many nodes around one at the bottom, and
+    the tensions of the lines that the cage's file names. docs/simulators.md has every column.
+
+    Example:
+        seacage campaign import results mine.zarr --cage mine.toml --simulator "OrcaFlex 11.4"
+
+    Options:
+        folder: Of nodes.csv, edges.csv, cases.csv and positions.nc.
+        out: The campaign's folder to write, a Zarr store.
+        simulator: Its name and version.
+        duration: That standard deviations and maxima are over, without spin-up, s.
+    """
+    from seacage.cage import Cage
+    from seacage.records import read_results, write_campaign
+
+    described = _options.read_cage(cage)
+    found = read_results(folder, described, simulator=simulator, duration=duration)
+    title = f"Results of {simulator} for cage {described.name!r}"
+    write_campaign(found, out, title=title, plan=folder.name, method="import")
+    simulated = Cage.from_toml(found.cage_toml)
+    _options.warn(simulated.warnings)
+    own, rings = simulated.mesh == described.mesh, f"{simulated.rings} rings of {simulated.spokes}"
+    report(
+        {"written": str(out), "cases": len(found), "lines": list(found.line_names)}
+        | {"nodes": simulated.node_count, "mesh_of_cage": own, "statistics": list(found.lines)},
+        rows=[
+            ("Written", f"{out}: {len(found)} cases of {simulator}"),
+            ("Net", f"{rings} nodes, {'as' if own else 'not'} in {cage}"),
+            ("Lines", f"{len(found.line_names)}: {', '.join(found.lines)}"),
+        ],
+    )
+
+
 @group.command(context_settings={"ignore_unknown_options": True})
 @guard
 def slurm(

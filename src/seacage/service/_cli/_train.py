@@ -92,12 +92,14 @@ def train(
     counts = {name: windows[name].points if name in windows else 0 for name in levels}
     kinds = twin.models.parted.kinds if twin.models.parted else ()
     lines = twin.models.line_upper
+    left_out = _gaps(simulated.simulator, twin) if simulated and simulated.simulator else []
     report(
         {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
         | {"level": levels, "points": counts, "travel_time": asdict(twin.travel_time)}
         | {"calibrated": {name: window.calibrated for name, window in windows.items()}}
         | {"parted": {one.line: [one.learned, one.simulated] for one in kinds}}
-        | {"line_loads": {name: asdict(one) for name, one in lines.items()}},
+        | {"line_loads": {name: asdict(one) for name, one in lines.items()}}
+        | {"left_out": left_out},
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
@@ -111,6 +113,7 @@ def train(
                 (f"{name}, its line", f"level 2, {one.windows} windows, {one.rate}")
                 for name, one in lines.items()
             ),
+            *(("Left out", sentence) for sentence in left_out),
         ],
     )
 
@@ -121,6 +124,27 @@ def _travel_time(twin: "Twin") -> str:
         return f"none found from {twin.buoy} to the cage"
     limit = f"{travel.longest_s / 60.0:g} min at most"
     return f"{travel.distance_m:g} m from {twin.buoy} to the cage, at the current's speed, {limit}"
+
+
+def _gaps(simulator: str, twin: "Twin") -> list[str]:
+    """What a twin of another program's results lacks, or has of seacage's simulations."""
+    loads = twin.models.loads
+    found = ["What is left if a line parts: seacage learns it from its own simulations alone."]
+    if loads is None:
+        found.append(
+            "Loads of lines in waves, wear and largest loads: they need std, maximum, mpm_3h and "
+            "expected_3h of every line in 20 cases with waves or more, of many periods."
+        )
+    else:
+        found.append("Symmetry: loads in waves are learned without the images of each case.")
+    if loads is None or loads.motion is None:
+        found.append("How far depths swing in waves: it needs these loads and node_position_std.")
+    if twin.models.net is not None:
+        found.append(
+            "Intervals of the net at level 2: those that seacage's simulations have (decision 78); "
+            f"none were measured with {simulator}."
+        )
+    return found
 
 
 def _stores(folders: list[Path]) -> list[Path]:

@@ -31,29 +31,18 @@ class ShapeTrial:
     """Training and test cases of models of the shape."""
 
     cage: Cage  # that was simulated
-    # Training and test cases, of which the converged ones count
+    # Training and test cases, all of which ended with an answer
     campaign: CampaignRecord
     held_out: CampaignRecord
     seed: int  # of the trainings
 
     @property
-    def computed(self) -> Float[np.ndarray, "case node 3"]:
-        """Shapes of the test cases [m]."""
-        return self.held_out.node_position[self.held_out.converged]
-
-    @property
-    def seas(self) -> list[SeaState]:
-        """That they were computed in."""
-        return _seas_of(self.held_out)
-
-    @property
     def over_time(self) -> OverTime | None:
         """Shapes at all time steps, test cases included, as in the paper; None without them."""
-        moment = self.campaign.second_moment
+        moment, parts = self.campaign.second_moment, (self.campaign, self.held_out)
         if moment is None:
             return None
-        training = self.campaign.node_position[self.campaign.converged]
-        every = np.concatenate([training, self.computed])
+        every = np.concatenate([one.node_position for one in parts])
         return OverTime.of_moment(every, moment, rest_position=self.cage.design_position)
 
 
@@ -119,15 +108,15 @@ def shape_study(
         scores[model.name] = shape_score(
             model.name,
             answers[model.name],
-            trial.computed,
+            trial.held_out.node_position,
             collar=trial.cage.ring_nodes(0),
             inputs=shape_models.WORDS[model.inputs],
             **cost,
         )
     return ShapeStudy(
-        training_cases=int(np.sum(trial.campaign.converged)),
-        test_cases=len(trial.seas),
-        current_speed=np.array([sea.current_speed for sea in trial.seas]),
+        training_cases=len(trial.campaign),
+        test_cases=len(trial.held_out),
+        current_speed=np.array([sea.current_speed for sea in trial.held_out.seas]),
         scores=scores,
         cases=_draw_cases(trial, answers),
         variance=_variance(trial),
@@ -152,9 +141,9 @@ def _make(
 ) -> None:
     """Train a model, ask it, and keep its shapes and what they took."""
     x, test_features = (
-        _features(_seas_of(one), model.inputs) for one in (trial.campaign, trial.held_out)
+        _features(one.seas, model.inputs) for one in (trial.campaign, trial.held_out)
     )
-    shape = trial.campaign.node_position[trial.campaign.converged]
+    shape = trial.campaign.node_position
     known = {
         "over_time": trial.over_time,
         "rest_position": trial.cage.design_position,
@@ -206,12 +195,8 @@ def _features(
     )
 
 
-def _seas_of(record: CampaignRecord) -> list[SeaState]:
-    return [sea for sea, good in zip(record.seas, record.converged, strict=True) if good]
-
-
 def _draw_cases(trial: ShapeTrial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, ...]:
-    seas, computed = trial.seas, trial.computed
+    seas, computed = trial.held_out.seas, trial.held_out.node_position
     speed = np.array([sea.current_speed for sea in seas])
     order = np.argsort(speed, kind="stable")
     rows = {one: int(order[round(share * (len(order) - 1))]) for one, share in _DRAWN.items()}
@@ -231,9 +216,7 @@ def _variance(trial: ShapeTrial) -> dict[str, float]:
     """What three modes hold, of the cases' means and, where it was kept, of all time steps."""
     rest = trial.cage.design_position.ravel()
     shapes = {
-        "means of the cases": OverTime.of_snapshots(
-            trial.campaign.node_position[trial.campaign.converged]
-        ),
+        "means of the cases": OverTime.of_snapshots(trial.campaign.node_position),
         "all time steps": trial.over_time,
     }
     shares: dict[str, float] = {}

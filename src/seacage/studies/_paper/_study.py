@@ -10,7 +10,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, no_progress
 from seacage.records import CampaignRecord, FieldRecord, read_campaign
-from seacage.studies._chain import Chain, Recipe
+from seacage.studies._chain import Chain, Recipe, cases_with_answer
 from seacage.studies._page import write_report
 from seacage.studies._paper._claims import PaperClaim, paper_claims
 from seacage.studies._paper._report import page_values
@@ -166,11 +166,10 @@ def study_chain(
 
 def score_level_one(twin: Twin, held_out: CampaignRecord) -> LevelOneScore:
     """Score the tensions of level 1 on simulations that it has not seen."""
-    seas = [sea for sea, good in zip(held_out.seas, held_out.converged, strict=True) if good]
-    tension = held_out.bridle_tension[held_out.converged]
-    answer = twin.predict(seas)
+    held_out = cases_with_answer(held_out)
+    tension, answer = held_out.bridle_tension, twin.predict(held_out.seas)
     return LevelOneScore(
-        cases=len(seas),
+        cases=len(held_out),
         bridle_names=twin.bridle_names,
         bridle_mae=np.mean(np.abs(answer.bridle_low - tension), axis=0),
         bridle_mean=np.mean(tension, axis=0),
@@ -219,8 +218,8 @@ def _shapes(chain: Chain, *, networks: bool) -> ShapeStudy:
         models,
         ShapeTrial(
             cage=chain.cage,
-            campaign=chain.campaign,
-            held_out=chain.held_out,
+            campaign=cases_with_answer(chain.campaign),
+            held_out=cases_with_answer(chain.held_out),
             seed=chain.recipe.seed,
         ),
         chain.stages,

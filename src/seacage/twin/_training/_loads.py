@@ -1,6 +1,7 @@
 """Training of level 1 of lines' loads in waves, folded by the cage's symmetry."""
 
 from collections.abc import Sequence
+from dataclasses import fields
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,6 +17,8 @@ from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean
 
 LEAST_CASES = 20  # with waves, that converged
+# Of every line, by the names of a campaign's
+STATISTICS = ("mean", "std", "mpm_3h", "expected_3h", "maximum", "damage_equivalent")
 
 # Lower waves move no line by more than rounding, and would weigh as much as any [m]
 LEAST_HS = 0.05
@@ -35,15 +38,17 @@ def train_line_loads(
 ) -> LineLoads | None:
     """Train level 1 of lines' loads; None where the campaign has none to learn from.
 
-    It has where it was simulated in time, in waves whose period varies beside their height.
+    It has where it was simulated in time, in waves whose period varies beside their height. No
+    symmetry is known of the lines of another simulator.
     """
     wavy = in_waves(campaign)
-    if not campaign.line_names or wavy.sum() < LEAST_CASES:
+    if not set(STATISTICS) <= campaign.lines.keys() or wavy.sum() < LEAST_CASES:
         return None
     water = Metocean.of(campaign.seas).rows(wavy)
     if period_span(water) < LEAST_SPAN:
         return None
-    symmetry, x = line_symmetry(cage, campaign.line_names), load_features(water)
+    symmetry = None if campaign.simulator else line_symmetry(cage, campaign.line_names)
+    x = load_features(water)
     surrogate = LoadGP(symmetry=symmetry, restarts=restarts).fit(
         x, load_cases(campaign, wavy), duration=campaign.duration, seed=seed
     )
@@ -83,15 +88,9 @@ def in_waves(campaign: CampaignRecord) -> Bool[np.ndarray, " case"]:
 
 def load_cases(campaign: CampaignRecord, some: np.ndarray) -> LoadCases:
     """Loads of some cases of a campaign."""
-    loads = {name: np.asarray(values, dtype=np.float64) for name, values in campaign.lines.items()}
-    return LoadCases(
-        mean=loads["mean"],
-        std=loads["std"],
-        most_probable=loads["mpm_3h"],
-        expected=loads["expected_3h"],
-        largest=loads["maximum"],
-        damage_equivalent=loads["damage_equivalent"],
-    ).rows(some)
+    names = (one.name for one in fields(LoadCases))
+    columns = (np.asarray(campaign.lines[name], dtype=np.float64) for name in STATISTICS)
+    return LoadCases(**dict(zip(names, columns, strict=True))).rows(some)
 
 
 def representative_lines(cage: Cage, *, mooring: Mooring = "catenary") -> tuple[str, ...]:

@@ -91,7 +91,7 @@ def train(
         Called after each model.
     """
     training = Training() if training is None else training
-    _check_inputs(campaign, field, training)
+    _check_inputs(campaign, field, parted, training)
     sensors = [name for name in cage.sensor_names if field and name in field.sensors]
 
     def report(stage: str, done: int) -> None:
@@ -152,12 +152,20 @@ def _with_waves(models: Models, field: FieldRecord) -> Models:
 
 
 def _check_inputs(
-    campaign: CampaignRecord | None, field: FieldRecord | None, training: Training
+    campaign: CampaignRecord | None,
+    field: FieldRecord | None,
+    parted: Sequence[CampaignRecord],
+    training: Training,
 ) -> None:
     if campaign is not None and campaign.parted:
         raise InputError(
             f"train: the campaign is of a cage without {', '.join(campaign.parted)}. Give that of "
             "the whole cage, and this one as parted."
+        )
+    if parted and campaign is not None and campaign.simulator:
+        raise InputError(
+            "train: what is left if a line parts is learned from pairs of seacage's own "
+            f"simulations, and the campaign is of {campaign.simulator}. Leave parted out."
         )
     for key in input_keys(training.inputs):
         if field and not (key in field.buoy.values and np.any(field.buoy.usable(key))):

@@ -11,6 +11,9 @@ from seacage.campaigns import CampaignStatus, Plan
 from seacage.records import read_campaign
 from seacage.service._cli._app import app
 from seacage.service._cli._plans import PlanOptions
+from seacage.testing import stand_in_campaign, stand_in_seas
+from simulators import write_results
+from wavy import CAGE
 
 
 def planned(**given):
@@ -173,3 +176,20 @@ def test_two_lines_are_parted_by_name_alone(tmp_path: Path):
     run("campaign", "run", tmp_path / "two", *CALM, *SPRINGS, *both)
     assert read_campaign(tmp_path / "two").parted == ("bridle-1", "bridle-2")
     assert "--parted-lines" in refusal(*CALM, *both, "--parted-lines")
+
+
+def test_results_of_another_simulator_are_imported_and_read_as_a_campaign(tmp_path: Path):
+    folder = write_results(tmp_path / "results", stand_in_campaign(CAGE, stand_in_seas(5)))
+    CAGE.write(tmp_path / "mine.toml")
+    out, options = tmp_path / "out.zarr", ("--simulator", "Other 1", "--json")
+    words = ("campaign", "import", folder, out, "--cage", tmp_path / "mine.toml", *options)
+    told = json.loads(run(*words).stdout)
+    assert (told["cases"], told["nodes"], told["mesh_of_cage"]) == (5, 81, True)
+    assert told["lines"] == list(CAGE.bridle_names)
+    status = json.loads(run("campaign", "status", out, "--json").stdout)
+    assert (status["law"], status["method"], status["converged"]) == ("Other 1", "import", 5)
+    assert run("campaign", "export", out, tmp_path / "out.nc").exit_code == 0
+    assert read_campaign(tmp_path / "out.nc").simulator == "Other 1"
+    again = run(*words)
+    assert again.exit_code == 1
+    assert "there is something already" in again.stderr

@@ -33,6 +33,7 @@ COMMANDS = [
     "campaign status",
     "campaign finish",
     "campaign export",
+    "campaign import",
     "campaign slurm",
     "field virtual",
     "field import",
