@@ -112,7 +112,9 @@ def running(
     """Serve cages until the block ends; other options of the service go through."""
     clock, metrics = HandClock(), Metrics()
     store, tokens = Store(folder / "samples.sqlite"), Tokens(folder)
-    parts = {"store": store, "clock": clock, "metrics": metrics, "policy": policy}
+    parts = {"store": store, "clock": clock, "metrics": metrics}
+    if policy is not None:
+        parts["policy"] = lambda _: policy
     twin = twin or stand_in_twin()
     cages = {name: LiveCage(name=name, twin=twin, tick_s=0.3, **parts) for name in names}
     service = Service(cages=cages, store=store, tokens=tokens, metrics=metrics, **service)

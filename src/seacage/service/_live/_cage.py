@@ -3,18 +3,20 @@
 import asyncio
 import time
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cached_property
+from pathlib import Path
 from typing import assert_never
 
 import numpy as np
 import structlog
 from jaxtyping import Float
 
+from seacage.conventions import InputError, ModelError, SeacageError
 from seacage.records import DEFAULT_LIMITS, Sample
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
@@ -24,12 +26,16 @@ from seacage.service._live._frame import Flags, frame_of
 from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
+from seacage.service._live._twin_shelf import Request, Term, TwinShelf, check_fit, hash_of
+from seacage.service._schemas._cages import Topology
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store
 from seacage.twin import (
+    Action,
     Alarm,
+    AlarmEvent,
     AlarmPolicy,
     Answered,
     Event,
@@ -54,6 +60,7 @@ class Snapshot:
     answered: Answered
     state: State
     rest_position: Float[np.ndarray, "node 3"]
+    twin: Twin  # that answered
     about: Flags = Flags.LIVE
     made: float = field(default_factory=time.monotonic)
 
@@ -99,27 +106,39 @@ class LiveCage:
         clock: Clock,
         metrics: Metrics,  # where steps and samples are counted
         tick_s: float = 2.0,  # longest pause between two looks at the clock [s of the wall]
-        policy: AlarmPolicy | None = None,  # limits of the alarms; None for the usual
+        # Limits of the alarms with a twin; None for the usual
+        policy: Callable[[Twin], AlarmPolicy] | None = None,
         # Share of the still-water volume below which the cage is not called well [-]
         least_volume: float = 0.8,
+        shelf: TwinShelf | None = None,  # where its twins are kept; None for a replay
     ) -> None:
         store.claim(name)
-        self.name, self.twin, self.store, self.clock = name, twin, store, clock
-        self.past = Past(twin, store, name)
+        self.name, self.store, self.clock = name, store, clock
         self._metrics, self._tick_s, self._least_volume = metrics, tick_s, least_volume
+        self._shelf, self._policy = shelf, policy or _usual_policy
         self.streams = _quantities(twin)
         self._pending: deque[Stored] = deque()
         self._waiting = 0
         self._arrived, self._room = asyncio.Event(), asyncio.Event()
         self._room.set()
-        self._stepping = asyncio.Lock()
+        self._stepping, self._replacing = asyncio.Lock(), asyncio.Lock()
         self._mailboxes: set[Mailbox] = set()
-        self.topology = topology_of(name, twin, speed=clock.speed)
-        self.rest_position = np.array(self.topology.rest_position_m)
-        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
-        self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
+        limits = self._policy(twin)
+        past = Past(twin, store, name, hash_of(twin), shelf=shelf)
+        self.past, self.topology = self._begin_term(past), self._topology_of(twin)
+        self.desk = AlarmDesk(self.past, policy=limits)
         self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
         self.snapshot = self._snapshot_of(self.live.answered)
+
+    @property
+    def twin(self) -> Twin:
+        """The twin in force."""
+        return self.past.twin
+
+    @property
+    def rest_position(self) -> Float[np.ndarray, "node 3"]:
+        """Where the nodes are in still water [m]."""
+        return np.array(self.topology.rest_position_m)
 
     @property
     def latest_allowed(self) -> datetime:
@@ -127,22 +146,34 @@ class LiveCage:
         return latest_allowed(self.clock, self.twin.timeouts.future_s)
 
     def state_of(
-        self, answered: Answered, memory: TwinState, *, alarms: Sequence[AlarmBrief] = ()
+        self,
+        answered: Answered,
+        memory: TwinState,
+        *,
+        alarms: Sequence[AlarmBrief] = (),
+        past: Past | None = None,  # with the twin that answered; None for the one in force
     ) -> State:
         """Say what the cage does at one time, and what of it is not well."""
-        damage = self.live.damage.at(answered.t)
-        state = state_of(self.name, self.twin, answered, memory, damage=damage)
+        past, damage = past or self.past, self.live.damage.at(answered.t)
+        state = state_of(self.name, past.twin, answered, memory, damage=damage)
         policy, least = self.desk.policy, self._least_volume
         concerns = concerns_of(state, memory, policy=policy, least_volume=least)
-        return state.model_copy(update={"alarms": list(alarms), "concerns": list(concerns)})
+        also = {"twin": past.id, "alarms": list(alarms), "concerns": list(concerns)}
+        return state.model_copy(update=also)
 
     def snapshot_at(self, at: datetime | None) -> Snapshot:
         """Return what the cage said at a time, or says now."""
         if at is None:
             return self.snapshot
-        memory, answered = self.past.state_at(at)
-        state, rest = self.state_of(answered, memory), self.rest_position
-        return Snapshot(answered=answered, state=state, rest_position=rest, about=Flags.PAST)
+        past = self.past.of(at)
+        memory, answered = past.state_at(at)
+        return Snapshot(
+            answered=answered,
+            state=self.state_of(answered, memory, past=past),
+            rest_position=self.rest_position,
+            twin=past.twin,
+            about=Flags.PAST,
+        )
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""
@@ -189,7 +220,85 @@ class LiveCage:
                 )
                 self._note(events)
                 self._publish(answered)
+            await self.follow_log()
             await asyncio.sleep(_GATHERED_S)
+
+    async def replace_twin(self, source: Path | None, *, who: str, why: str) -> Term:
+        """Put another twin in force between two steps; what it takes is in ``TwinShelf.ask``.
+
+        ``source``: its folder; None for the twin before. ``who``, ``why``: for the journal.
+
+        Raises InputError: it does not fit the cage, or is none; or this is a replay.
+        """
+        if self._shelf is None:
+            raise InputError("A replay keeps the twin that it began with. Start it with another.")
+        try:
+            asked = await asyncio.to_thread(self._shelf.ask, self.name, source, who=who, why=why)
+        except (ModelError, OSError) as error:
+            raise InputError(str(error)) from error
+        await self.follow_log()
+        log = self._shelf.log(self.name)
+        if log.request and log.request.twin == asked:
+            later = "The disk takes no files now; the twin is replaced once it does."
+            raise InputError(log.request.refused or later)
+        return log.terms[-1]
+
+    def twins(self) -> tuple[Term, ...]:
+        """Name the twins that have been in force."""
+        return self._shelf.log(self.name).terms if self._shelf else ()
+
+    async def follow_log(self) -> None:
+        """Put the twin in force that the log asks for, or note there why not."""
+        async with self._replacing:
+            request = self._shelf.log(self.name).request if self._shelf else None
+            if self._shelf is None or request is None or request.refused:
+                return
+            try:
+                twin = await asyncio.to_thread(self._shelf.read, request.twin)
+                check_fit(self.twin, twin)
+                limits, topology = self._policy(twin), self._topology_of(twin)
+                await self._swap(twin, limits, topology, request)
+            except (SeacageError, OSError) as error:
+                _log.error("twin refused", cage=self.name, reason=str(error))
+                with suppress(OSError):
+                    self._shelf.refuse(self.name, request, str(error))
+
+    async def _swap(
+        self, twin: Twin, limits: AlarmPolicy, topology: Topology, request: Request
+    ) -> None:
+        """Put a twin in force; the log is changed once the twin has answered."""
+        async with self._stepping:
+            before, now = self.past, self.clock.now()
+            past = replace(before, twin=twin, id=request.twin, since=now)
+            self._take_pending()  # the new twin begins from the disk, where all samples are
+            try:
+                answered = await asyncio.to_thread(self.live.follow, past)
+                past = await asyncio.to_thread(self._begin_term, past)
+            except (SeacageError, OSError):
+                await asyncio.to_thread(self.live.follow, before)
+                raise
+            self.past, self.topology = past, topology
+            self.desk.follow(past, limits)
+            words = f"{past.id} in place of {before.id}. {request.why}".strip()
+            line = AlarmEvent(
+                alarm=f"twin.{self.name}",
+                action=Action.REPLACED,
+                t=now,
+                who=request.who,
+                why=words,
+            )
+            self.desk.journal(line)
+            self._publish(answered)
+
+    def _begin_term(self, past: Past) -> Past:
+        """Note in the log that a twin is in force, from now on where it was not so already."""
+        if self._shelf is None:
+            return past
+        terms = self._shelf.begin(self.name, past.id, past.since or self.clock.now()).terms
+        return replace(past, since=terms[-1].since) if terms and terms[-1].twin == past.id else past
+
+    def _topology_of(self, twin: Twin) -> Topology:
+        return topology_of(self.name, twin, speed=self.clock.speed)
 
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
@@ -298,7 +407,12 @@ class LiveCage:
 
     def _snapshot_of(self, answered: Answered) -> Snapshot:
         state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())
-        return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
+        rest = self.rest_position
+        return Snapshot(answered=answered, state=state, rest_position=rest, twin=self.twin)
+
+
+def _usual_policy(twin: Twin) -> AlarmPolicy:
+    return AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
 
 
 def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from seacage.service._schemas._alarms import LONGEST_WORDS
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 from seacage.service._schemas._state import Concern
 
@@ -29,6 +30,28 @@ class LinePlace(AbstractAnswer):
     name: str
     kind: str
     ends_m: list[list[float]]
+
+
+class TwinTerm(AbstractAnswer):
+    """A twin by its hash, since when it is in force (null for the first), and who put it there."""
+
+    since: datetime | None
+    twin: str
+    who: str
+    why: str
+
+
+class TwinTerms(AbstractAnswer):
+    """The twins of a cage in the order in which they came; the last one is in force."""
+
+    terms: list[TwinTerm]
+
+
+class TwinReplacement(AbstractRequest):
+    """Folder of a twin on the service's machine, or null for the twin before, and why."""
+
+    folder: Annotated[str, Field(max_length=1000, pattern=r"^[^\x00]+$")] | None
+    why: Annotated[str, Field(max_length=LONGEST_WORDS)] = ""
 
 
 class Topology(AbstractAnswer):

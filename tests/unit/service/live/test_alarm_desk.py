@@ -20,7 +20,7 @@ def store(tmp_path: Path):
 
 def desk_of(store: Store) -> AlarmDesk:
     twin = stand_in_twin()
-    return AlarmDesk(cage="ace", twin=twin, store=store, policy=AlarmPolicy.default(twin.cage))
+    return AlarmDesk(Past(twin, store, "ace"), policy=AlarmPolicy.default(twin.cage))
 
 
 def looked(desk: AlarmDesk) -> set[str]:
