@@ -39,7 +39,6 @@ from seacage.service._schemas._cages import (
     Topology,
     TwinReplacement,
     TwinTerm,
-    TwinTerms,
 )
 from seacage.service._schemas._state import History, Shape, State
 
@@ -176,13 +175,7 @@ def get_topology(live: Live) -> Topology:
     return live.topology
 
 
-@cages.get("/{cage}/twins", dependencies=may_read, responses=READ)
-def get_twins(live: Live) -> TwinTerms:
-    """Name the twins that have answered for the cage, and since when."""
-    return TwinTerms.model_validate({"terms": live.twins()})
-
-
-@cages.post("/{cage}/twins", dependencies=may_administrate, responses=WRITE)
+@cages.post("/{cage}/twin", dependencies=may_administrate, responses=WRITE)
 async def replace_twin(live: Live, body: TwinReplacement, who: Who) -> TwinTerm:
     """Check a twin and put it in force between two ticks; the old one is kept.
 

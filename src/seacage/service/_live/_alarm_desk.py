@@ -13,6 +13,7 @@ import structlog
 
 from seacage.conventions import InputError
 from seacage.service._live._past import Past
+from seacage.service._live._twin_shelf import Term
 from seacage.service._schemas._alarms import alarm_state
 from seacage.service._schemas._state import AlarmBrief
 from seacage.service._store._store import StoreError
@@ -76,21 +77,19 @@ class AlarmDesk:
 
     def __init__(self, past: Past, *, policy: AlarmPolicy) -> None:
         self._cage, self._store, self._lost = past.cage, past.store, ""
-        self._book = self._open_book()
-        self.follow(past, policy)
+        self._twin, self._id, self.policy = past.twin, past.id, policy
+        self._book = self._open_book().retargeted(past.id)
         self._kept_at: datetime | None = None
         self._unkept: deque[AlarmEvent] = deque(maxlen=_WAITING)
         self._failing = False
         self._listeners: list[Callable[[Announcement], None]] = []
 
-    def follow(self, past: Past, policy: AlarmPolicy) -> None:
-        """Assess a twin's answers from now on; how the alarms stand does not change."""
+    def follow(self, past: Past, policy: AlarmPolicy, request: Term, *, now: datetime) -> None:
+        """Assess the answers of a twin that was asked for; how the alarms stand does not change."""
         self._twin, self._id, self.policy = past.twin, past.id, policy
         self._book = self._book.retargeted(past.id)
-
-    def journal(self, event: AlarmEvent) -> "Future[None]":
-        """Write a line about what is no alarm, with the book as it stands."""
-        return self._keep([event])
+        name, who, why = f"twin.{self._cage}", request.who, request.why
+        self._keep([AlarmEvent(alarm=name, action=Action.REPLACED, t=now, who=who, why=why)])
 
     @property
     def alarms(self) -> Mapping[str, Alarm]:

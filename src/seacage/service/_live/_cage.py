@@ -26,16 +26,13 @@ from seacage.service._live._frame import Flags, frame_of
 from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
-from seacage.service._live._twin_shelf import Request, Term, TwinShelf, check_fit, hash_of
-from seacage.service._schemas._cages import Topology
+from seacage.service._live._twin_shelf import Term, TwinShelf, check_fit, hash_of
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
-from seacage.service._store._store import Store
+from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
-    Action,
     Alarm,
-    AlarmEvent,
     AlarmPolicy,
     Answered,
     Event,
@@ -49,6 +46,7 @@ from seacage.twin import (
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
+_PATIENCE_S = 30.0  # of who replaces a twin
 _log = structlog.get_logger(__name__)
 
 
@@ -121,12 +119,16 @@ class LiveCage:
         self._waiting = 0
         self._arrived, self._room = asyncio.Event(), asyncio.Event()
         self._room.set()
-        self._stepping, self._replacing = asyncio.Lock(), asyncio.Lock()
+        self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox] = set()
         limits = self._policy(twin)
         past = Past(twin, store, name, hash_of(twin), shelf=shelf)
-        self.past, self.topology = self._begin_term(past), self._topology_of(twin)
+        request = shelf.log(name).open_request if shelf else None
+        self.past = replace(past, since=shelf and shelf.begin(name, past.id, clock.now()))
+        self.topology = topology_of(name, twin, speed=clock.speed)
         self.desk = AlarmDesk(self.past, policy=limits)
+        if request and self.past.since:  # asked for, or put into its folder, since the last start
+            self.desk.follow(self.past, limits, request, now=clock.now())
         self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
         self.snapshot = self._snapshot_of(self.live.answered)
 
@@ -219,86 +221,32 @@ class LiveCage:
                     self._step, self._take_pending(), ticked=ticked
                 )
                 self._note(events)
+                if self._shelf and (request := self._shelf.log(self.name).open_request):
+                    answered = await asyncio.to_thread(self._follow, self._shelf, request)
                 self._publish(answered)
-            await self.follow_log()
             await asyncio.sleep(_GATHERED_S)
 
     async def replace_twin(self, source: Path | None, *, who: str, why: str) -> Term:
-        """Put another twin in force between two steps; what it takes is in ``TwinShelf.ask``.
+        """Put another twin in force between two steps; returns once it has answered.
 
         ``source``: its folder; None for the twin before. ``who``, ``why``: for the journal.
 
-        Raises InputError: it does not fit the cage, or is none; or this is a replay.
+        Raises InputError: it is no twin or does not fit the cage, or this is a replay.
+        Raises StoreError: it is kept, and is taken as soon as the disk lets that be.
         """
         if self._shelf is None:
             raise InputError("A replay keeps the twin that it began with. Start it with another.")
         try:
-            asked = await asyncio.to_thread(self._shelf.ask, self.name, source, who=who, why=why)
+            await asyncio.to_thread(self._shelf.ask, self.name, source, who=who, why=why)
         except (ModelError, OSError) as error:
             raise InputError(str(error)) from error
-        await self.follow_log()
-        log = self._shelf.log(self.name)
-        if log.request and log.request.twin == asked:
-            later = "The disk takes no files now; the twin is replaced once it does."
-            raise InputError(log.request.refused or later)
-        return log.terms[-1]
-
-    def twins(self) -> tuple[Term, ...]:
-        """Name the twins that have been in force."""
-        return self._shelf.log(self.name).terms if self._shelf else ()
-
-    async def follow_log(self) -> None:
-        """Put the twin in force that the log asks for, or note there why not."""
-        async with self._replacing:
-            request = self._shelf.log(self.name).request if self._shelf else None
-            if self._shelf is None or request is None or request.refused:
-                return
-            try:
-                twin = await asyncio.to_thread(self._shelf.read, request.twin)
-                check_fit(self.twin, twin)
-                limits, topology = self._policy(twin), self._topology_of(twin)
-                await self._swap(twin, limits, topology, request)
-            except (SeacageError, OSError) as error:
-                _log.error("twin refused", cage=self.name, reason=str(error))
-                with suppress(OSError):
-                    self._shelf.refuse(self.name, request, str(error))
-
-    async def _swap(
-        self, twin: Twin, limits: AlarmPolicy, topology: Topology, request: Request
-    ) -> None:
-        """Put a twin in force; the log is changed once the twin has answered."""
-        async with self._stepping:
-            before, now = self.past, self.clock.now()
-            past = replace(before, twin=twin, id=request.twin, since=now)
-            self._take_pending()  # the new twin begins from the disk, where all samples are
-            try:
-                answered = await asyncio.to_thread(self.live.follow, past)
-                past = await asyncio.to_thread(self._begin_term, past)
-            except (SeacageError, OSError):
-                await asyncio.to_thread(self.live.follow, before)
-                raise
-            self.past, self.topology = past, topology
-            self.desk.follow(past, limits)
-            words = f"{past.id} in place of {before.id}. {request.why}".strip()
-            line = AlarmEvent(
-                alarm=f"twin.{self.name}",
-                action=Action.REPLACED,
-                t=now,
-                who=request.who,
-                why=words,
-            )
-            self.desk.journal(line)
-            self._publish(answered)
-
-    def _begin_term(self, past: Past) -> Past:
-        """Note in the log that a twin is in force, from now on where it was not so already."""
-        if self._shelf is None:
-            return past
-        terms = self._shelf.begin(self.name, past.id, past.since or self.clock.now()).terms
-        return replace(past, since=terms[-1].since) if terms and terms[-1].twin == past.id else past
-
-    def _topology_of(self, twin: Twin) -> Topology:
-        return topology_of(self.name, twin, speed=self.clock.speed)
+        end = time.monotonic() + _PATIENCE_S
+        while (term := self._shelf.outcome(self.name)) is None:
+            if time.monotonic() > end:
+                raise StoreError(f"{self.name} has not taken its twin yet. See the service's log.")
+            self._arrived.set()
+            await asyncio.sleep(_GATHERED_S)
+        return term
 
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
@@ -380,6 +328,26 @@ class LiveCage:
         """Step through samples at once, and tick: the answer is as old as this call."""
         with self._metrics.steps.labels(self.name).time():
             return self.live.step(arrived, ticked=ticked)
+
+    def _follow(self, shelf: TwinShelf, request: Term) -> Answered:
+        """Put the twin in force that is asked for, once it has answered, or note why not."""
+        before, now = self.past, self.clock.now()
+        try:
+            twin = shelf.read(request.twin)
+            check_fit(before.twin, twin)
+            limits = self._policy(twin)
+            topology = topology_of(self.name, twin, speed=self.clock.speed)
+            after = replace(before, twin=twin, id=request.twin, since=now)
+            answered = self.live.follow(after)
+            shelf.begin(self.name, after.id, now)
+        except (SeacageError, OSError) as error:
+            _log.error("twin refused", cage=self.name, reason=str(error))
+            with suppress(OSError):  # it is tried again until the disk takes either
+                shelf.refuse(self.name, str(error))
+            return self.live.follow(before)
+        self.past, self.topology = after, topology
+        self.desk.follow(after, limits, request, now=now)
+        return answered
 
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:

@@ -20,43 +20,37 @@ from seacage.twin import Twin
 
 _ID_DIGITS = 16  # of a twin's hash: enough that two never meet by chance
 _log = structlog.get_logger(__name__)
-_read = lru_cache(maxsize=4)(Twin.read)  # the twins in force, and one before for the past
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """A twin that somebody wants in force."""
-
-    twin: str  # its hash
-    configured: str  # hash of the twin in the folder that the settings name, at that time
-    who: str
-    why: str = ""
-    refused: str = ""  # why the service did not take it; empty until it is known
+_read = lru_cache(maxsize=4)(Twin.read)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Term:
-    """A twin's time in force, until the next term."""
+    """A twin's time in force, until the next term, or the wish for one."""
 
-    since: datetime | None  # by the cage's clock; None for the first, which has all before too
     twin: str  # its hash
-    configured: str  # as of the request
+    configured: str  # hash of the twin in the folder of the settings when this was asked for
+    since: datetime | None = None  # by the cage's clock; None for the first: all before is its own
     who: str = ""
     why: str = ""
+    refused: str = ""  # why the service does not take it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TwinLog:
-    """The twins of a cage, the last one in force, and the one that is to follow it."""
+    """The twins of a cage, the last one in force, and the one that is asked for after it."""
 
     terms: tuple[Term, ...] = ()
-    request: Request | None = None
+    request: Term | None = None
 
     @property
-    def last(self) -> Request | Term | None:
-        """What to start with: what was asked for, else what was in force."""
-        asked = self.request if self.request and not self.request.refused else None
-        return asked or (self.terms[-1] if self.terms else None)
+    def open_request(self) -> Term | None:
+        """What is asked for and not refused."""
+        return self.request if self.request and not self.request.refused else None
+
+    @property
+    def last(self) -> Term | None:
+        """What to start with: what is asked for, else what was in force."""
+        return self.open_request or (self.terms[-1] if self.terms else None)
 
     def at(self, t: datetime) -> Term:
         """Return the term that a time belongs to."""
@@ -70,46 +64,39 @@ class TwinShelf:
     """The folder ``twins`` of a service's data.
 
     A twin lies in a folder named by its hash, and is never changed. ``CAGE.json`` is the log of a
-    cage, which a command and a running service both change, one at a time: its replacement by
-    another file is the one step by which a twin comes into force. So whoever is killed leaves the
-    old twin or the new one in force, whole, and at most a folder that nothing names.
+    cage, which a command and a running service change one at a time: its replacement by another
+    file is the one step by which a twin comes into force. So whoever is killed leaves the old twin
+    or the new one in force, whole, and at most a folder that nothing names.
 
-    ``folder``: the service's data folder. ``key``: that twins are signed with; None takes any.
+    ``data``: the service's data folder. ``key``: that twins are signed with; None takes any.
     """
 
-    def __init__(self, folder: Path, *, key: bytes | None = None) -> None:
-        self._folder, self._key = folder / "twins", key
-        self._seen: dict[str, tuple[tuple[int, int], TwinLog]] = {}
+    def __init__(self, data: Path, *, key: bytes | None = None) -> None:
+        self.folder, self._key = data / "twins", key
 
     def cages(self) -> list[str]:
         """Name the cages that have had a twin."""
-        return sorted(path.stem for path in self._folder.glob("*.json"))
+        return sorted(path.stem for path in self.folder.glob("*.json"))
 
     def log(self, cage: str) -> TwinLog:
-        """Read the log of a cage; a file that has not changed is not read again."""
-        path = self._path(cage)
-        try:
-            status = path.stat()
-        except FileNotFoundError:
-            return TwinLog()
-        place = status.st_ino, status.st_mtime_ns
-        if cage not in self._seen or self._seen[cage][0] != place:
-            self._seen[cage] = place, _parsed(path.read_text("utf-8"), path)
-        return self._seen[cage][1]
+        """Read the log of a cage. Raises InputError: it is none."""
+        path = self.folder / f"{cage}.json"
+        return _log_of(path.read_text("utf-8") if path.exists() else "", path)
 
     def read(self, twin: str) -> Twin:
         """Read a kept twin by its hash. Raises ModelError: it is gone, damaged or not signed."""
-        return _read(self._folder / twin, key=self._key)
+        return _read(self.folder / twin, key=self._key)
 
     def choose(self, name: str | None, configured: Path) -> tuple[str, Twin]:
-        """Choose the twin to start with: what was asked for, else what was in force.
+        """Choose a cage's twin at a start, and its name.
 
-        A folder of the settings whose twin is another one than before comes first.
+        What is asked for or was in force serves, unless the folder of the settings has another twin
+        than then.
 
         ``name``: of the cage; None for the twin's own. ``configured``: folder of the settings.
 
-        Raises ModelError: the folder is no twin's, or not signed by the key, and there is no key or
-        no twin before.
+        Raises ModelError: the folder is no twin's, or not signed by the key; with a key the twin
+        before serves on, if there is one.
         """
         try:
             twin = Twin.read(configured, key=self._key)
@@ -127,98 +114,92 @@ class TwinShelf:
             except ModelError as error:
                 _log.error("the twin of the settings serves", cage=name, reason=str(error))
         try:
-            self._keep(configured, own)
-            request = Request(twin=own, configured=own, who="settings")
-            self._change(name, lambda log: replace(log, request=request))
+            self._request(name, configured, Term(twin=own, configured=own, who="settings"))
         except OSError as error:  # a full disk does not stop a start
             _log.warning("twin not kept", cage=name, reason=str(error))
         return name, twin
 
-    def ask(self, cage: str, source: Path | None, *, who: str, why: str) -> str:
-        """Check a twin, keep it, and ask that it follow the one in force; its hash.
+    def ask(self, cage: str, source: Path | None, *, who: str, why: str) -> None:
+        """Check a twin, keep it, and ask that it follow the one in force.
 
         ``source``: folder of the twin; None for the one that was in force before.
 
         Raises InputError: it does not fit the cage, or there is none before.
         Raises ModelError: the folder is no twin's, damaged or not signed.
         """
-        log = self.log(cage)
-        if not log.terms:
+        terms = self.log(cage).terms
+        if not terms:
             known = ", ".join(self.cages()) or "none yet"
             raise InputError(
                 f"twin: no twin of a cage {cage!r} is in force; cages with one: {known}. Start "
                 "`seacage serve` with the twin."
             )
-        now = log.terms[-1]
+        now = terms[-1]
         if source is None:
-            earlier = (one.twin for one in reversed(log.terms) if one.twin != now.twin)
-            if (before := next(earlier, None)) is None:
+            before = [one.twin for one in terms if one.twin != now.twin]
+            if not before:
                 raise InputError(f"twin: {cage} has had no other twin before {now.twin}.")
-            source = self._folder / before
+            source = self.folder / before[-1]
         twin = Twin.read(source, key=self._key)
-        if (asked := hash_of(twin)) == now.twin:
-            raise InputError(f"twin: {source} is {asked}, which is in force already.")
+        if hash_of(twin) == now.twin:
+            raise InputError(f"twin: {source} is {now.twin}, which is in force already.")
         check_fit(self.read(now.twin), twin)
-        self._keep(source, asked)
-        request = Request(twin=asked, configured=now.configured, who=who, why=why)
-        self._change(cage, lambda log: replace(log, request=request))
-        return asked
+        request = Term(twin=hash_of(twin), configured=now.configured, who=who, why=why)
+        self._request(cage, source, request)
 
-    def begin(self, cage: str, twin: str, now: datetime) -> TwinLog:
-        """Note that a twin is in force from now on, unless it is so already; the log after it."""
+    def outcome(self, cage: str) -> Term | None:
+        """Return the term that was asked for; None until the service has taken it.
+
+        Raises InputError: the service has refused it.
+        """
+        log = self.log(cage)
+        if log.request and log.request.refused:
+            raise InputError(log.request.refused)
+        return None if log.request else log.terms[-1]
+
+    def begin(self, cage: str, twin: str, now: datetime) -> datetime | None:
+        """Note that a twin is in force, from now on if it was not before; since when it is."""
 
         def put(log: TwinLog) -> TwinLog:
-            request = log.request
-            if request is None or request.twin != twin:
+            if log.request is None or log.request.twin != twin:
                 return log
-            last = log.terms[-1] if log.terms else None
-            if last and last.twin == twin:
-                terms = *log.terms[:-1], replace(last, configured=request.configured)
-            else:
-                about = {key: getattr(request, key) for key in ("configured", "who", "why")}
-                terms = *log.terms, Term(since=now if last else None, twin=twin, **about)
-            return TwinLog(terms=terms)
+            since, terms = now if log.terms else None, log.terms
+            if terms and terms[-1].twin == twin:
+                since, terms = terms[-1].since, terms[:-1]
+            return TwinLog(terms=(*terms, replace(log.request, since=since)))
 
-        return self._change(cage, put) if self.log(cage).request else self.log(cage)
+        log = self._change(cage, put) if self.log(cage).request else self.log(cage)
+        return log.terms[-1].since if log.terms and log.terms[-1].twin == twin else None
 
-    def refuse(self, cage: str, request: Request, reason: str) -> None:
-        """Note why a twin that was asked for is not put in force."""
-        refused = replace(request, refused=reason)
+    def refuse(self, cage: str, reason: str) -> None:
+        """Note why the twin that is asked for is not taken."""
         self._change(
-            cage, lambda log: replace(log, request=refused) if log.request == request else log
+            cage,
+            lambda log: replace(log, request=log.request and replace(log.request, refused=reason)),
         )
 
-    def _path(self, cage: str) -> Path:
-        return self._folder / f"{cage}.json"
-
-    def _change(self, cage: str, changed: Callable[[TwinLog], TwinLog]) -> TwinLog:
-        path, after = self._path(cage), TwinLog()
-
-        def rewrite(text: str) -> str:
-            nonlocal after
-            after = changed(_parsed(text, path) if text else TwinLog())
-            return _LOG.dump_json(after, indent=1).decode()
-
-        rewrite_small(path, rewrite)
-        return after
-
-    def _keep(self, source: Path, twin: str) -> None:
-        """Copy a twin, whole or not at all, unless it is there."""
-        to, fresh = self._folder / twin, self._folder / f".{twin}.new"
+    def _request(self, cage: str, source: Path, request: Term) -> None:
+        """Keep a twin, whole or not at all, unless it is kept already; then ask for it."""
+        to, fresh = self.folder / request.twin, self.folder / f".{request.twin}.new"
         try:
             Twin.read(to, key=self._key)
-            return
-        except ModelError:  # not there, or what is there is damaged
+        except ModelError:  # not there, or damaged
             shutil.rmtree(fresh, ignore_errors=True)
-        shutil.copytree(source, fresh, symlinks=True)
-        for path in (*fresh.iterdir(), fresh):
-            path.chmod(0o700 if path == fresh else 0o600)
-            _sync(path)
-        if hash_of(Twin.read(fresh, key=self._key)) != twin:
-            raise InputError(f"twin: {source} changed while it was copied. Copy it again.")
-        shutil.rmtree(to, ignore_errors=True)
-        fresh.rename(to)
-        _sync(self._folder)
+            self.folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+            shutil.copytree(source, fresh, symlinks=True)
+            os.sync()
+            if hash_of(Twin.read(fresh, key=self._key)) != request.twin:
+                raise InputError(f"twin: {source} changed while it was copied. Again.") from None
+            shutil.rmtree(to, ignore_errors=True)
+            fresh.rename(to)
+        self._change(cage, lambda log: replace(log, request=request))
+
+    def _change(self, cage: str, changed: Callable[[TwinLog], TwinLog]) -> TwinLog:
+        path = self.folder / f"{cage}.json"
+        rewrite_small(
+            path, lambda text: _LOG.dump_json(changed(_log_of(text, path)), indent=1).decode()
+        )
+        return self.log(cage)
 
 
 def hash_of(twin: Twin) -> str:
@@ -232,50 +213,38 @@ def check_fit(old: Twin, new: Twin) -> None:
     Raises InputError: it has other streams, lines or nodes, comes from another simulator, or has no
     answer.
     """
-    differences = [
-        f"{what} {', '.join(map(str, sorted({*before} ^ {*after})))}"
-        for what, before, after in (
-            ("the buoy", [old.buoy], [new.buoy]),
-            ("depth sensors", *([s.name for s in one.cage.depth_sensors] for one in (old, new))),
-            ("shackles", *([s.name for s in one.cage.shackles] for one in (old, new))),
-            ("bridles", old.bridle_names, new.bridle_names),
-            ("lines", old.models.lines.names, new.models.lines.names),
-            ("numbers of nodes", [old.cage.node_count], [new.cage.node_count]),
-        )
-        if {*before} != {*after}
-    ]
-    if differences:
+    before, after = _names(old), _names(new)
+    if different := sorted(before ^ after):
         raise InputError(
-            f"twin: the new twin differs in {'; '.join(differences)} (in only one of the two). "
-            "Train it with the cage's own file, or restart the service with it."
+            f"twin: only one of the two twins has {', '.join(different[:8])}. Train the new one "
+            "with the cage's own file, or restart the service with it."
         )
     if new.provenance.physics not in (None, PHYSICS):
         raise InputError(
-            f"twin: the new twin is of PHYSICS {new.provenance.physics}, and this seacage is of "
-            f"PHYSICS {PHYSICS}. Train it anew."
+            f"twin: it is of PHYSICS {new.provenance.physics}, and this seacage of {PHYSICS}. "
+            "Train it anew."
         )
     speed, hs = (strength / 2.0 for strength in new.models.edge)
     answer = new.predict(SeaState(current_speed=speed, current_to=90.0, hs=hs, wave_from=270.0))
-    means = (answer.bridle_tension.mean, answer.sensor.mean, answer.node_position)
+    means = answer.bridle_tension.mean, answer.sensor.mean, answer.node_position
     if not (answer.valid[0] and all(np.isfinite(one).all() for one in means)):
-        raise InputError(
-            "twin: the new twin has no finite answer in a moderate sea. Train it anew."
-        )
+        raise InputError("twin: it has no finite answer at half of its edge. Train it anew.")
 
 
-def _parsed(text: str, path: Path) -> TwinLog:
+def _names(twin: Twin) -> set[str]:
+    """What alarms, pages and counters know of a twin by its name."""
+    cage = twin.cage
+    return {
+        f"the stream {twin.buoy}",
+        f"{cage.node_count} nodes",
+        *(f"the depth sensor {one.name}" for one in cage.depth_sensors),
+        *(f"the shackle {one.name}" for one in cage.shackles),
+        *(f"the line {name}" for name in {*cage.bridle_names, *twin.models.lines.names}),
+    }
+
+
+def _log_of(text: str, path: Path) -> TwinLog:
     try:
-        return _LOG.validate_json(text)
+        return _LOG.validate_json(text) if text else TwinLog()
     except ValidationError as error:
-        raise InputError(
-            f"{path} is no log of twins ({str(error).splitlines()[0]}). Move it away, and start "
-            "the service with the twin."
-        ) from error
-
-
-def _sync(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+        raise InputError(f"{path} is no log of twins. Move it away, and start anew.") from error

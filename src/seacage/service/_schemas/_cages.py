@@ -41,12 +41,6 @@ class TwinTerm(AbstractAnswer):
     why: str
 
 
-class TwinTerms(AbstractAnswer):
-    """The twins of a cage in the order in which they came; the last one is in force."""
-
-    terms: list[TwinTerm]
-
-
 class TwinReplacement(AbstractRequest):
     """Folder of a twin on the service's machine, or null for the twin before, and why."""
 
