@@ -31,9 +31,11 @@ CALLS = {
     for path, calls in DESCRIBED["paths"].items()
     for method, call in calls.items()
 } | {"get /openapi.json": {}}
-ACTIONS = {"post /api/v1/cages/{cage}/samples": "ingest"} | {
-    call: "ack" for call in CALLS if re.match("post .*/(alarms|damage)/", call)
-} | {"post /api/v1/cages/{cage}/twin": "admin"}
+ACTIONS = (
+    {"post /api/v1/cages/{cage}/samples": "ingest"}
+    | {call: "ack" for call in CALLS if re.match("post .*/(alarms|damage)/", call)}
+    | {"post /api/v1/cages/{cage}/twin": "admin"}
+)
 """What a call takes that does not only read."""
 IDS = {
     "Things": MINE,

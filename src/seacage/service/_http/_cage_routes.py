@@ -34,12 +34,7 @@ from seacage.service._live._answers import shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas import _samples as schemas
 from seacage.service._schemas._base import Health
-from seacage.service._schemas._cages import (
-    Cages,
-    Topology,
-    TwinReplacement,
-    TwinTerm,
-)
+from seacage.service._schemas._cages import Cages, Topology, TwinReplacement
 from seacage.service._schemas._state import History, Shape, State
 
 _TOGETHER = 500  # samples that are written at once
@@ -176,14 +171,14 @@ def get_topology(live: Live) -> Topology:
 
 
 @cages.post("/{cage}/twin", dependencies=may_administrate, responses=WRITE)
-async def replace_twin(live: Live, body: TwinReplacement, who: Who) -> TwinTerm:
-    """Check a twin and put it in force between two ticks; the old one is kept.
+async def replace_twin(live: Live, body: TwinReplacement, who: Who) -> State:
+    """Check a twin and put it in force between two ticks; the answer is its first.
 
-    Alarms, counts of damage and history stay. One that does not fit the cage is refused with 422,
-    and nothing changes.
+    Alarms, counts of damage and history stay, and the old twin is kept. One that does not fit the
+    cage is refused with 422, and nothing changes.
     """
     folder = None if body.folder is None else Path(body.folder)
-    return TwinTerm.model_validate(await live.replace_twin(folder, who=who, why=body.why))
+    return await live.replace_twin(folder, who=who, why=body.why)
 
 
 @cages.get("/{cage}/history", dependencies=may_read_rows, responses=READ, response_model=History)

@@ -226,8 +226,8 @@ class LiveCage:
                 self._publish(answered)
             await asyncio.sleep(_GATHERED_S)
 
-    async def replace_twin(self, source: Path | None, *, who: str, why: str) -> Term:
-        """Put another twin in force between two steps; returns once it has answered.
+    async def replace_twin(self, source: Path | None, *, who: str, why: str) -> State:
+        """Put another twin in force between two steps; returns its first answer.
 
         ``source``: its folder; None for the twin before. ``who``, ``why``: for the journal.
 
@@ -241,12 +241,13 @@ class LiveCage:
         except (ModelError, OSError) as error:
             raise InputError(str(error)) from error
         end = time.monotonic() + _PATIENCE_S
-        while (term := self._shelf.outcome(self.name)) is None:
+        while self._shelf.outcome(self.name) is None:
             if time.monotonic() > end:
                 raise StoreError(f"{self.name} has not taken its twin yet. See the service's log.")
             self._arrived.set()
             await asyncio.sleep(_GATHERED_S)
-        return term
+        async with self._stepping:
+            return self.snapshot.state
 
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None

@@ -12,7 +12,7 @@ import numpy as np
 import structlog
 from pydantic import TypeAdapter, ValidationError
 
-from seacage.conventions import InputError, ModelError
+from seacage.conventions import InputError, ModelError, read_text
 from seacage.dynamics import PHYSICS
 from seacage.ocean import SeaState
 from seacage.service._small_files import rewrite_small
@@ -81,7 +81,7 @@ class TwinShelf:
     def log(self, cage: str) -> TwinLog:
         """Read the log of a cage. Raises InputError: it is none."""
         path = self.folder / f"{cage}.json"
-        return _log_of(path.read_text("utf-8") if path.exists() else "", path)
+        return _log_of(read_text(path) if path.exists() else "", path)
 
     def read(self, twin: str) -> Twin:
         """Read a kept twin by its hash. Raises ModelError: it is gone, damaged or not signed."""

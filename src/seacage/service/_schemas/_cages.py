@@ -32,15 +32,6 @@ class LinePlace(AbstractAnswer):
     ends_m: list[list[float]]
 
 
-class TwinTerm(AbstractAnswer):
-    """A twin by its hash, since when it is in force (null for the first), and who put it there."""
-
-    since: datetime | None
-    twin: str
-    who: str
-    why: str
-
-
 class TwinReplacement(AbstractRequest):
     """Folder of a twin on the service's machine, or null for the twin before, and why."""
 

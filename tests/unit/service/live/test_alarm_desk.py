@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from seacage.service._live._alarm_desk import AlarmDesk
+from seacage.service._live._past import Past
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy
