@@ -73,15 +73,25 @@ class TwinShelf:
 
     def __init__(self, data: Path, *, key: bytes | None = None) -> None:
         self.folder, self._key = data / "twins", key
+        self._known: dict[str, TwinLog] = {}
 
     def cages(self) -> list[str]:
         """Name the cages that have had a twin."""
         return sorted(path.stem for path in self.folder.glob("*.json"))
 
     def log(self, cage: str) -> TwinLog:
-        """Read the log of a cage. Raises InputError: it is none."""
+        """Read the log of a cage; one that was spoiled since is as it was.
+
+        Raises InputError: it is none.
+        """
         path = self.folder / f"{cage}.json"
-        return _log_of(read_text(path) if path.exists() else "", path)
+        try:
+            self._known[cage] = _log_of(read_text(path) if path.exists() else "", path)
+        except InputError as error:
+            if cage not in self._known:
+                raise
+            _log.error("log of twins spoiled", cage=cage, reason=str(error))
+        return self._known[cage]
 
     def read(self, twin: str) -> Twin:
         """Read a kept twin by its hash. Raises ModelError: it is gone, damaged or not signed."""

@@ -182,6 +182,7 @@ def test_a_disk_that_takes_nothing_does_not_stop_a_start(shelf, old, monkeypatch
 def test_a_log_that_cannot_be_read_is_named(shelf, old):
     start(shelf, old)
     (shelf.folder / "ace.json").write_text("{")
+    assert [twin for _, twin in terms(shelf)] == [hash_at(old)], "who runs goes on"
     with pytest.raises(InputError, match=r"ace\.json is no log of twins.*Move it away"):
         TwinShelf(shelf.folder.parent).choose("ace", old)
 
