@@ -109,7 +109,9 @@ def lived(made: Demonstration, end: datetime, names: tuple[str, ...]) -> Iterato
     with tempfile.TemporaryDirectory() as folder:
         store, tokens = open_store(Path(folder) / "samples.sqlite"), Tokens(Path(folder))
         parts = {"twin": twin, "store": store, "clock": clock, "metrics": metrics}
-        cages = {one: LiveCage(name=one, policy=policy, tick_s=0.5, **parts) for one in names}
+        cages = {
+            one: LiveCage(name=one, policy=lambda _: policy, tick_s=0.5, **parts) for one in names
+        }
         service = Service(cages=cages, store=store, tokens=tokens, metrics=metrics)
         listener = socket.create_server(("127.0.0.1", 0))
         config = uvicorn.Config(create_app(service), ws="websockets-sansio", log_config=None)

@@ -64,8 +64,8 @@ class CageHarness:
         policy = AlarmPolicy.default(
             self.twin.cage, buoy=self.twin.buoy, timeouts=self.twin.timeouts
         )
-        self.desk = AlarmDesk(cage="ace", twin=self.twin, store=self.store, policy=policy)
         past = Past(self.twin, self.store, "ace")
+        self.desk = AlarmDesk(past, policy=policy)
         self._live = LiveTwin(past, clock=self.clock, desk=self.desk, tick_s=self._tick_s)
         self._arrived = []
 

@@ -18,6 +18,7 @@ from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
+from seacage.service._live._twin_shelf import TwinShelf
 from seacage.service._settings import Settings
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
@@ -105,6 +106,7 @@ def running(
     names: tuple[str, ...] = ("ace",),
     twin: Twin | None = None,
     policy: AlarmPolicy | None = None,
+    shelf: TwinShelf | None = None,
     port: int = 0,
     proxies: tuple[str, ...] = (),
     **service,
@@ -112,7 +114,9 @@ def running(
     """Serve cages until the block ends; other options of the service go through."""
     clock, metrics = HandClock(), Metrics()
     store, tokens = Store(folder / "samples.sqlite"), Tokens(folder)
-    parts = {"store": store, "clock": clock, "metrics": metrics, "policy": policy}
+    parts = {"store": store, "clock": clock, "metrics": metrics, "shelf": shelf}
+    if policy is not None:
+        parts["policy"] = lambda _: policy
     twin = twin or stand_in_twin()
     cages = {name: LiveCage(name=name, twin=twin, tick_s=0.3, **parts) for name in names}
     service = Service(cages=cages, store=store, tokens=tokens, metrics=metrics, **service)

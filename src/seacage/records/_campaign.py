@@ -51,6 +51,7 @@ class CampaignRecord:
     law: str  # the load law of the netting
     seed: int  # of the plan that drew the sea states
     version: str  # of the seacage that computed the answers
+    physics: int | None = None  # and its revision of the physics, where that is known
     wave_seed: Int[np.ndarray, " case"] | None = None  # of each case's waves
     # Of each case's mooring: ``Cage.drawn`` by it is the case's cage. None where all cases have the
     # cage's own mooring.
@@ -102,7 +103,8 @@ class CampaignRecord:
         digest = hashlib.sha256(self.cage_toml.encode())
         for part in fields(self):
             value = getattr(self, part.name)
-            if value is None or part.name in ("duration", "parted") or part.name.startswith("line"):
+            apart = part.name in ("duration", "parted", "physics") or part.name.startswith("line")
+            if value is None or apart:
                 continue
             digest.update(
                 value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode()
@@ -147,6 +149,7 @@ def read_campaign(path: str | Path) -> CampaignRecord:
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
+        physics=int(attributes["physics"]) if "physics" in attributes else None,
         duration=float(attributes.get("duration_s", math.nan)),
         line_names=_words(attributes.get("line_names", "")),
         line_kinds=_words(attributes.get("line_kinds", "")),

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import structlog
 
-from seacage.conventions import InputError, ModelError
+from seacage.conventions import InputError
 from seacage.service._auth._audit import Audit
 from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service, create_app
@@ -20,6 +20,7 @@ from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, Wal
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
+from seacage.service._live._twin_shelf import TwinShelf
 from seacage.service._publish._webhooks import WebhookNotifier
 from seacage.service._quarantine import Quarantine
 from seacage.service._settings import CageSection, Settings
@@ -41,25 +42,14 @@ def read_twins(settings: Settings) -> dict[str, Twin]:
     Raises ModelError: a folder is no twin's, changed by as little as a byte or not signed by the
     key, and none was served before.
     """
+    shelf = twin_shelf(settings)
+    return dict(shelf.choose(one.name, one.twin) for one in own_cages(settings))
+
+
+def twin_shelf(settings: Settings) -> TwinShelf:
+    """Where the twins of cages are kept. Raises InputError: as for ``read_twins``."""
     key = read_key(settings.twin_key) if settings.twin_key else None
-    sections = own_cages(settings)
-    twins = [(one.name, _read_twin_or_last(one, settings.data / "twins", key)) for one in sections]
-    return {name or twin.cage.name: twin for name, twin in twins}
-
-
-def _read_twin_or_last(section: CageSection, folder: Path, key: bytes | None) -> Twin:
-    """A cage's twin; with a key, where it is refused, the one that was served last."""
-    last = folder / (section.name or "twin")
-    try:
-        twin = Twin.read(section.twin, key=key)
-    except ModelError as error:
-        if key is None or not last.is_dir():
-            raise
-        _log.error("twin refused, the last one serves on", cage=last.name, reason=str(error))
-        return Twin.read(last, key=key)
-    if key is not None:
-        twin.write(last, key=key)
-    return twin
+    return TwinShelf(settings.data, key=key)
 
 
 def own_cages(settings: Settings) -> tuple[CageSection, ...]:
@@ -124,7 +114,8 @@ def assemble(
     if replay is not None and len(twins) != 1:
         raise InputError(f"serve: a record is replayed into one cage, and there are {len(twins)}.")
     _check_group(settings)
-    policies = {name: policy_of(settings, name, twin) for name, twin in twins.items()}
+    for name, twin in twins.items():
+        policy_of(settings, name, twin)  # refused before anything is opened
     store = open_store(
         store_place(settings, replayed=replay is not None),
         archive=settings.store.archive if replay is None else None,
@@ -140,8 +131,9 @@ def assemble(
                 clock=clock,
                 metrics=metrics,
                 tick_s=settings.tick_s,
-                policy=policies[name],
+                policy=partial(policy_of, settings, name),
                 least_volume=settings.least_volume,
+                shelf=twin_shelf(settings) if replay is None else None,
             )
             for name, twin in twins.items()
         }

@@ -26,6 +26,8 @@ class AlarmBook:
     t: datetime | None = None  # the twin's clock at the last assessment; None before the first
     detector: FaultDetector = field(default_factory=FaultDetector)  # state of the fault detector
     format: str = BOOK_FORMAT  # of the JSON, checked by ``from_json``
+    # Hash of the twin whose residuals the detector knows; empty where it is not known
+    twin: str = ""
 
     __pydantic_config__ = json_keys(detector="suspicion")
 
@@ -64,6 +66,16 @@ class AlarmBook:
     def with_alarm(self, alarm: Alarm) -> Self:
         """Return a copy in which one alarm has changed."""
         return replace(self, alarms={**self.alarms, alarm.name: alarm})
+
+    def retargeted(self, twin: str) -> Self:
+        """Return the book for the answers of a twin.
+
+        What the fault detector has learned of another twin's residuals is forgotten; alarms stay
+        as they are.
+        """
+        same = self.twin in ("", twin)
+        detector = self.detector if same else self.detector.relearning()
+        return replace(self, twin=twin, detector=detector)
 
     def at(self, now: datetime, *, jump_s: float) -> Self:
         """Return the book for an assessment at this time.

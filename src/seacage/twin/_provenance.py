@@ -32,6 +32,8 @@ class Provenance:
     campaign_seed: int
     campaign_sha256: str
     cases: int
+    # Revision of the simulator's physics; None where the campaign does not say
+    physics: int | None = None
     kernel: str  # of the bridles' level 1, the better of two by leave-one-out
     origin: Origin  # of the sensors' data; "computed" where no sensor has level 2
     hidden_sha256: str | None  # of a virtual field's hidden parameters

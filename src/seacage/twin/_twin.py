@@ -79,6 +79,8 @@ class Twin:
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     discrepancy: Discrepancy | None = None
     travel_time: TravelTime = field(default_factory=TravelTime)
+    # Of the manifest of the folder that it was read from; empty for one that was not read
+    sha256: str = field(default="", init=False)
 
     @classmethod
     def read(cls, folder: str | Path, *, key: bytes | None = None) -> Self:
@@ -87,7 +89,10 @@ class Twin:
         Raises ModelError: a file is missing, foreign, of another version, or changed by as little
         as a byte.
         """
-        return cls(**from_parts(*read_folder(Path(folder), key=key), source=str(folder)))
+        settings, arrays, sha256 = read_folder(Path(folder), key=key)
+        twin = cls(**from_parts(settings, arrays, source=str(folder)))
+        object.__setattr__(twin, "sha256", sha256)
+        return twin
 
     def write(self, folder: str | Path, *, key: bytes | None = None) -> None:
         """Save as a folder of JSON and safetensors, sealed by a manifest of SHA-256 sums.
@@ -98,7 +103,7 @@ class Twin:
 
         Raises ModelError: the folder holds something else.
         """
-        parts = {one.name: getattr(self, one.name) for one in fields(self)}
+        parts = {one.name: getattr(self, one.name) for one in fields(self) if one.init}
         write_folder(Path(folder), *to_parts(**parts), key=key)
 
     @property

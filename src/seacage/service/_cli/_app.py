@@ -21,7 +21,7 @@ from seacage.service._cli import (
 )
 from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
-from seacage.service._cli._data import _archive, _backup, _token
+from seacage.service._cli._data import _archive, _backup, _token, _twin
 from seacage.service._cli._rov import _commands
 
 app = typer.Typer(
@@ -79,6 +79,7 @@ app.command()(_commands.clearance)
 app.command("inspect-path")(_commands.inspect_path)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
+app.add_typer(_twin.group, name="twin")
 app.add_typer(_archive.group, name="archive")
 app.add_typer(_config.group, name="config")
 app.command()(_backup.backup)

@@ -102,9 +102,7 @@ def serve(
     os.umask(0o077)  # what a service writes is its owner's alone
     # The port first: minutes of preparation should not end at a port that is taken.
     with _listening(settings.host, settings.port) as listener:
-        twins, replay = _prepare(settings, demo=demo, record=record)
-        if cage and not settings.cages:
-            twins = dict.fromkeys([cage], next(iter(twins.values())))
+        twins, replay = _prepare(settings, cage, demo=demo, record=record)
         pace = 60.0 if speed is None else speed
         service = assemble(settings, twins, replay=replay, speed=pace)
         _greet(settings, service, listener, pace if replay else None)
@@ -124,11 +122,11 @@ def _listening(host: str, port: int) -> socket.socket:
 
 
 def _prepare(
-    settings: "Settings", *, demo: bool, record: Path | None
+    settings: "Settings", cage: str | None, *, demo: bool, record: Path | None
 ) -> tuple[dict[str, "Twin"], "Replay | None"]:
     """Read or make the twins, and what feeds them."""
     from seacage.records import read_record
-    from seacage.service._assembly import read_twins
+    from seacage.service._assembly import read_twins, twin_shelf
     from seacage.service._live._replay import replay_of
     from seacage.studies import prepare_demonstration
     from seacage.twin import Twin
@@ -140,10 +138,11 @@ def _prepare(
         made = prepare_demonstration(
             settings.data / "demonstration", record=buoy if demo else None, progress=progress
         )
+    if not demo and buoy is None:
+        return dict([twin_shelf(settings).choose(cage, made.twin_folder)]), None
     twin = Twin.read(made.twin_folder)
-    if demo:
-        return {twin.cage.name: twin}, replay_of(made.buoy, made.field)
-    return {twin.cage.name: twin}, replay_of(buoy) if buoy else None
+    replay = replay_of(made.buoy, made.field) if demo or buoy is None else replay_of(buoy)
+    return {cage or twin.cage.name: twin}, replay
 
 
 def _greet(

@@ -1,12 +1,13 @@
 """The calls of the HTTP interface: the service itself, its cages, their samples and answers."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 
 from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import JSONResponse, StreamingResponse
 
 from seacage.records import Sample
-from seacage.service._auth._authorization import Permit
+from seacage.service._auth._authorization import Permit, Who
 from seacage.service._http._dependencies import (
     BINARY,
     READ,
@@ -23,6 +24,7 @@ from seacage.service._http._dependencies import (
     Width,
     body_of,
     cages_of,
+    may_administrate,
     may_ingest,
     may_read,
     may_read_rows,
@@ -32,7 +34,7 @@ from seacage.service._live._answers import shape_of, summary_of
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._schemas import _samples as schemas
 from seacage.service._schemas._base import Health
-from seacage.service._schemas._cages import Cages, Topology
+from seacage.service._schemas._cages import Cages, Topology, TwinReplacement
 from seacage.service._schemas._state import History, Shape, State
 
 _TOGETHER = 500  # samples that are written at once
@@ -168,6 +170,17 @@ def get_topology(live: Live) -> Topology:
     return live.topology
 
 
+@cages.post("/{cage}/twin", dependencies=may_administrate, responses=WRITE)
+async def replace_twin(live: Live, body: TwinReplacement, who: Who) -> State:
+    """Check a twin and put it in force between two ticks; the answer is its first.
+
+    Alarms, counts of damage and history stay, and the old twin is kept. One that does not fit the
+    cage is refused with 422, and nothing changes.
+    """
+    folder = None if body.folder is None else Path(body.folder)
+    return await live.replace_twin(folder, who=who, why=body.why)
+
+
 @cages.get("/{cage}/history", dependencies=may_read_rows, responses=READ, response_model=History)
 def get_history(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000
@@ -179,7 +192,9 @@ def get_history(
     A sensor that read more often is told by means of one or ten minutes. Intervals are as
     trained.
     """
-    history = history_between(live.twin, live.store, live.name, start=start, end=end, limit=limit)
+    past, span = live.past, {"start": start, "end": end}
+    history = history_between(past.twin, live.store, live.name, **span, limit=limit)
+    history = history.model_copy(update={"twin": past.id})
     return StreamingResponse(_history_text(history), media_type="application/json")
 
 

@@ -95,5 +95,5 @@ def _net_for(
 
 
 def _net(live: Live, at: At, *, allow_stale: bool, most_age_s: float | None = None) -> PredictedNet:
-    answered = live.snapshot_at(at).answered
-    return PredictedNet.of(live.twin, answered, allow_stale=allow_stale, most_age_s=most_age_s)
+    one = live.snapshot_at(at)
+    return PredictedNet.of(one.twin, one.answered, allow_stale=allow_stale, most_age_s=most_age_s)

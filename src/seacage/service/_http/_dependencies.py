@@ -92,7 +92,9 @@ Width = Annotated[
     Query(description="Of each span [s].", examples=[600], json_schema_extra={"enum": [60, 600]}),
 ]
 
-may_read, may_ingest, may_acknowledge = ([Depends(Permit(s))] for s in ("read", "ingest", "ack"))
+may_read, may_ingest, may_acknowledge, may_administrate = (
+    [Depends(Permit(scope))] for scope in ("read", "ingest", "ack", "admin")
+)
 PAGE = 2000  # samples that an answer without an end holds at a time
 
 

@@ -42,9 +42,10 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
         tp=body.tp_s,
         wave_from=body.wave_from_deg,
     )
-    water, twin, now = Metocean.of(sea), live.twin, live.clock.now()
+    water, past, now = Metocean.of(sea), live.past, live.clock.now()
+    twin = past.twin
     answered = Answered(t=now, answer=twin.predict(water), metocean=water, input_age_s=0.0)
-    state = state_of(live.name, twin, answered, twin.start())
+    state = state_of(live.name, twin, answered, twin.start()).model_copy(update={"twin": past.id})
     if state.water:
         state = state.model_copy(update={"water": effective_water(state.water, sea, twin)})
     frame = frame_of(state, answered, live.rest_position, about=Flags.WHAT_IF)
@@ -54,7 +55,8 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
 @what_if.get("/{cage}/what-if-parted", dependencies=may_read, responses=READ)
 def get_what_if_parted(live: Live, at: At = None) -> WhatIfParted:
     """Say what the other lines would bear if each line parted in the water of now, or of then."""
-    return what_if_parted(live.name, live.twin, live.snapshot_at(at).answered)
+    snapshot = live.snapshot_at(at)
+    return what_if_parted(live.name, snapshot.twin, snapshot.answered)
 
 
 def training_domain_of(twin: Twin) -> Learned:

@@ -4,7 +4,7 @@ import json
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import Future
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timedelta
 from functools import partial
 from types import MappingProxyType
@@ -12,9 +12,11 @@ from types import MappingProxyType
 import structlog
 
 from seacage.conventions import InputError
+from seacage.service._live._past import Past
+from seacage.service._live._twin_shelf import Term
 from seacage.service._schemas._alarms import alarm_state
 from seacage.service._schemas._state import AlarmBrief
-from seacage.service._store._store import Store, StoreError
+from seacage.service._store._store import StoreError
 from seacage.twin import (
     Action,
     Alarm,
@@ -24,7 +26,6 @@ from seacage.twin import (
     AlarmText,
     Answered,
     Changed,
-    Twin,
     TwinState,
     acknowledge,
     alarm_text,
@@ -70,19 +71,25 @@ class AlarmDesk:
     every alarm stands as it was last announced. Lines that the disk did not take are written
     with those that come after them.
 
-    ``cage``: its name in the service. ``twin``, ``store``, ``policy``: whose answers are assessed,
-    where it is kept, and by which limits.
+    ``past``: of the cage, with the twin whose answers are assessed, and the store where the book is
+    kept. ``policy``: the limits.
     """
 
-    def __init__(self, *, cage: str, twin: Twin, store: Store, policy: AlarmPolicy) -> None:
-        self._cage, self._twin, self._store = cage, twin, store
-        self.policy = policy
-        self._lost = ""
-        self._book = self._open_book()
+    def __init__(self, past: Past, *, policy: AlarmPolicy) -> None:
+        self._cage, self._store, self._lost = past.cage, past.store, ""
+        self._twin, self._id, self.policy = past.twin, past.id, policy
+        self._book = self._open_book().retargeted(past.id)
         self._kept_at: datetime | None = None
         self._unkept: deque[AlarmEvent] = deque(maxlen=_WAITING)
         self._failing = False
         self._listeners: list[Callable[[Announcement], None]] = []
+
+    def follow(self, past: Past, policy: AlarmPolicy, request: Term, *, now: datetime) -> None:
+        """Assess the answers of a twin that was asked for; how the alarms stand does not change."""
+        self._twin, self._id, self.policy = past.twin, past.id, policy
+        self._book = self._book.retargeted(past.id)
+        name, who, why = f"twin.{self._cage}", request.who, request.why
+        self._keep([AlarmEvent(alarm=name, action=Action.REPLACED, t=now, who=who, why=why)])
 
     @property
     def alarms(self) -> Mapping[str, Alarm]:
@@ -179,7 +186,7 @@ class AlarmDesk:
 
     def _keep(self, happened: Sequence[AlarmEvent]) -> Future[None]:
         waited = [self._unkept.popleft() for _ in range(len(self._unkept))]
-        lines = [*waited, *happened]
+        lines = [*waited, *(replace(one, twin=self._id) for one in happened)]
         kept = self._store.keep_alarms(self._cage, book=self._book.to_json(), journal=lines)
         kept.add_done_callback(partial(self._settle, lines))
         return kept
@@ -202,7 +209,7 @@ class AlarmDesk:
     def _announcement(self, alarm: Alarm, happened: AlarmEvent) -> Announcement:
         return Announcement(
             cage=self._cage,
-            happened=happened,
+            happened=replace(happened, twin=self._id),
             alarm=alarm,
             text=alarm_text(alarm, self.policy),
             severity=self.policy.limit(alarm.name).severity,
@@ -226,5 +233,6 @@ def announcement_json(announcement: Announcement, *, action: str | None = None) 
             "since": announcement.alarm.since and announcement.alarm.since.isoformat(),
             "who": happened.who,
             "why": happened.why,
+            "twin": happened.twin,
         }
     )

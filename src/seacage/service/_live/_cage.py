@@ -3,18 +3,20 @@
 import asyncio
 import time
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from functools import cached_property
+from pathlib import Path
 from typing import assert_never
 
 import numpy as np
 import structlog
 from jaxtyping import Float
 
+from seacage.conventions import InputError, ModelError, SeacageError
 from seacage.records import DEFAULT_LIMITS, Sample
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
@@ -24,10 +26,11 @@ from seacage.service._live._frame import Flags, frame_of
 from seacage.service._live._live_twin import LiveTwin
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
+from seacage.service._live._twin_shelf import Term, TwinShelf, check_fit, hash_of
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
-from seacage.service._store._store import Store
+from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
     Alarm,
     AlarmPolicy,
@@ -43,6 +46,7 @@ from seacage.twin import (
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
+_PATIENCE_S = 30.0  # of who replaces a twin
 _log = structlog.get_logger(__name__)
 
 
@@ -54,6 +58,7 @@ class Snapshot:
     answered: Answered
     state: State
     rest_position: Float[np.ndarray, "node 3"]
+    twin: Twin  # that answered
     about: Flags = Flags.LIVE
     made: float = field(default_factory=time.monotonic)
 
@@ -99,14 +104,16 @@ class LiveCage:
         clock: Clock,
         metrics: Metrics,  # where steps and samples are counted
         tick_s: float = 2.0,  # longest pause between two looks at the clock [s of the wall]
-        policy: AlarmPolicy | None = None,  # limits of the alarms; None for the usual
+        # Limits of the alarms with a twin; None for the usual
+        policy: Callable[[Twin], AlarmPolicy] | None = None,
         # Share of the still-water volume below which the cage is not called well [-]
         least_volume: float = 0.8,
+        shelf: TwinShelf | None = None,  # where its twins are kept; None for a replay
     ) -> None:
         store.claim(name)
-        self.name, self.twin, self.store, self.clock = name, twin, store, clock
-        self.past = Past(twin, store, name)
+        self.name, self.store, self.clock = name, store, clock
         self._metrics, self._tick_s, self._least_volume = metrics, tick_s, least_volume
+        self._shelf, self._policy = shelf, policy or _usual_policy
         self.streams = _quantities(twin)
         self._pending: deque[Stored] = deque()
         self._waiting = 0
@@ -114,12 +121,26 @@ class LiveCage:
         self._room.set()
         self._stepping = asyncio.Lock()
         self._mailboxes: set[Mailbox] = set()
+        limits = self._policy(twin)
+        past = Past(twin, store, name, hash_of(twin), shelf=shelf)
+        request = shelf.log(name).open_request if shelf else None
+        self.past = replace(past, since=shelf and shelf.begin(name, past.id, clock.now()))
         self.topology = topology_of(name, twin, speed=clock.speed)
-        self.rest_position = np.array(self.topology.rest_position_m)
-        limits = policy or AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
-        self.desk = AlarmDesk(cage=name, twin=twin, store=store, policy=limits)
+        self.desk = AlarmDesk(self.past, policy=limits)
+        if request and self.past.since:  # asked for, or put into its folder, since the last start
+            self.desk.follow(self.past, limits, request, now=clock.now())
         self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
         self.snapshot = self._snapshot_of(self.live.answered)
+
+    @property
+    def twin(self) -> Twin:
+        """The twin in force."""
+        return self.past.twin
+
+    @property
+    def rest_position(self) -> Float[np.ndarray, "node 3"]:
+        """Where the nodes are in still water [m]."""
+        return np.array(self.topology.rest_position_m)
 
     @property
     def latest_allowed(self) -> datetime:
@@ -127,22 +148,34 @@ class LiveCage:
         return latest_allowed(self.clock, self.twin.timeouts.future_s)
 
     def state_of(
-        self, answered: Answered, memory: TwinState, *, alarms: Sequence[AlarmBrief] = ()
+        self,
+        answered: Answered,
+        memory: TwinState,
+        *,
+        alarms: Sequence[AlarmBrief] = (),
+        past: Past | None = None,  # with the twin that answered; None for the one in force
     ) -> State:
         """Say what the cage does at one time, and what of it is not well."""
-        damage = self.live.damage.at(answered.t)
-        state = state_of(self.name, self.twin, answered, memory, damage=damage)
+        past, damage = past or self.past, self.live.damage.at(answered.t)
+        state = state_of(self.name, past.twin, answered, memory, damage=damage)
         policy, least = self.desk.policy, self._least_volume
         concerns = concerns_of(state, memory, policy=policy, least_volume=least)
-        return state.model_copy(update={"alarms": list(alarms), "concerns": list(concerns)})
+        also = {"twin": past.id, "alarms": list(alarms), "concerns": list(concerns)}
+        return state.model_copy(update=also)
 
     def snapshot_at(self, at: datetime | None) -> Snapshot:
         """Return what the cage said at a time, or says now."""
         if at is None:
             return self.snapshot
-        memory, answered = self.past.state_at(at)
-        state, rest = self.state_of(answered, memory), self.rest_position
-        return Snapshot(answered=answered, state=state, rest_position=rest, about=Flags.PAST)
+        past = self.past.of(at)
+        memory, answered = past.state_at(at)
+        return Snapshot(
+            answered=answered,
+            state=self.state_of(answered, memory, past=past),
+            rest_position=self.rest_position,
+            twin=past.twin,
+            about=Flags.PAST,
+        )
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""
@@ -188,8 +221,33 @@ class LiveCage:
                     self._step, self._take_pending(), ticked=ticked
                 )
                 self._note(events)
+                if self._shelf and (request := self._shelf.log(self.name).open_request):
+                    answered = await asyncio.to_thread(self._follow, self._shelf, request)
                 self._publish(answered)
             await asyncio.sleep(_GATHERED_S)
+
+    async def replace_twin(self, source: Path | None, *, who: str, why: str) -> State:
+        """Put another twin in force between two steps; returns its first answer.
+
+        ``source``: its folder; None for the twin before. ``who``, ``why``: for the journal.
+
+        Raises InputError: it is no twin or does not fit the cage, or this is a replay.
+        Raises StoreError: it is kept, and is taken as soon as the disk lets that be.
+        """
+        if self._shelf is None:
+            raise InputError("A replay keeps the twin that it began with. Start it with another.")
+        try:
+            await asyncio.to_thread(self._shelf.ask, self.name, source, who=who, why=why)
+        except (ModelError, OSError) as error:
+            raise InputError(str(error)) from error
+        end = time.monotonic() + _PATIENCE_S
+        while self._shelf.outcome(self.name) is None:
+            if time.monotonic() > end:
+                raise StoreError(f"{self.name} has not taken its twin yet. See the service's log.")
+            self._arrived.set()
+            await asyncio.sleep(_GATHERED_S)
+        async with self._stepping:
+            return self.snapshot.state
 
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
@@ -272,6 +330,26 @@ class LiveCage:
         with self._metrics.steps.labels(self.name).time():
             return self.live.step(arrived, ticked=ticked)
 
+    def _follow(self, shelf: TwinShelf, request: Term) -> Answered:
+        """Put the twin in force that is asked for, once it has answered, or note why not."""
+        before, now = self.past, self.clock.now()
+        try:
+            twin = shelf.read(request.twin)
+            check_fit(before.twin, twin)
+            limits = self._policy(twin)
+            topology = topology_of(self.name, twin, speed=self.clock.speed)
+            after = replace(before, twin=twin, id=request.twin, since=now)
+            answered = self.live.follow(after)
+            shelf.begin(self.name, after.id, now)
+        except (SeacageError, OSError) as error:
+            _log.error("twin refused", cage=self.name, reason=str(error))
+            with suppress(OSError):  # it is tried again until the disk takes either
+                shelf.refuse(self.name, str(error))
+            return self.live.follow(before)
+        self.past, self.topology = after, topology
+        self.desk.follow(after, limits, request, now=now)
+        return answered
+
     def _note(self, events: Sequence[Event]) -> None:
         for event in events:
             self._metrics.notices.labels(self.name, type(event).__name__).inc()
@@ -298,7 +376,12 @@ class LiveCage:
 
     def _snapshot_of(self, answered: Answered) -> Snapshot:
         state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())
-        return Snapshot(answered=answered, state=state, rest_position=self.rest_position)
+        rest = self.rest_position
+        return Snapshot(answered=answered, state=state, rest_position=rest, twin=self.twin)
+
+
+def _usual_policy(twin: Twin) -> AlarmPolicy:
+    return AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
 
 
 def _quantities(twin: Twin) -> dict[str, tuple[str, ...]]:

@@ -1,5 +1,6 @@
 """Damage of a cage's lines since their counters began, from the samples that are stored."""
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
@@ -11,9 +12,10 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.service._live._clock import floor_time
+from seacage.service._live._past import Past
 from seacage.service._store._damage import Stretch
-from seacage.service._store._store import Store, StoreError
-from seacage.twin import Action, AlarmEvent, Twin, damage_of_minutes
+from seacage.service._store._store import StoreError
+from seacage.twin import Action, AlarmEvent, damage_of_minutes
 
 _MINUTE, _HOUR, _DAY = timedelta(minutes=1), timedelta(hours=1), timedelta(days=1)
 _SEAS = 1000  # whose damage is remembered
@@ -36,17 +38,18 @@ class DamageCounter:
 
     They depend on the stored samples, the resets and the clock alone: whole hours are kept, an hour
     that late samples belong to is counted anew, and a service that was away counts what its buoy
-    has sent since. So nothing counts twice, whatever is repeated.
+    has sent since. So nothing counts twice, whatever is repeated. Each minute is counted by the
+    twin that was in force then.
     """
 
-    def __init__(self, *, name: str, twin: Twin, store: Store) -> None:
-        self._name, self._twin, self._store = name, twin, store
-        lines = twin.models.lines
+    def __init__(self, past: Past) -> None:
+        self._past, self._name, self._store = past, past.cage, past.store
+        lines = past.twin.models.lines
         self.lines = tuple(
             line for line, load in zip(lines.names, lines.tn_load, strict=True) if load > 0.0
         )
-        self._columns = [lines.names.index(line) for line in self.lines]
-        self._known: dict[bytes, Float[np.ndarray, " line"]] = {}
+        # By twin and sea
+        self._known: defaultdict[str, dict[bytes, Float[np.ndarray, " line"]]] = defaultdict(dict)
         self._running: tuple[datetime, list[Stretch]] | None
         # An hour, when the lines' counts began, and their sums up to that hour
         self._summed: tuple[datetime, Mapping[str, datetime], Mapping[str, LineDamage]] | None
@@ -116,7 +119,13 @@ class DamageCounter:
             raise InputError(f"No damage of a line {line!r} is counted. There are {counted}.")
         share = before[line].damage
         event = AlarmEvent(
-            alarm=f"damage.{line}", action=Action.RESET, t=now, value=share, who=who, why=why
+            alarm=f"damage.{line}",
+            action=Action.RESET,
+            t=now,
+            value=share,
+            who=who,
+            why=why,
+            twin=self._past.id,
         )
         self._running = None
         return self._begin((line,), floor_time(now, _MINUTE), (event,))
@@ -145,7 +154,7 @@ class DamageCounter:
         for begin in _steps(start, end, _DAY):
             until = min(begin + _DAY, end)
             gone = {t for t in self._rows if begin <= t < until}
-            if gone and self._store.is_retired(self._name, self._twin.buoy, begin, until):
+            if gone and self._store.is_retired(self._name, self._past.twin.buoy, begin, until):
                 continue  # its samples are gone, and what was counted of them stays
             rows = self._stretches(begin, until)
             kept = {t: one for t, one in self._rows.items() if t not in gone}
@@ -156,32 +165,29 @@ class DamageCounter:
         """Count anew between two whole minutes, cut at whole hours and where counters begin."""
         if start >= end:
             return []
-        stale = timedelta(seconds=self._twin.timeouts.stale_after_s)
-        cage, buoy = self._name, self._twin.buoy
+        twin = self._past.twin
+        stale, buoy = timedelta(seconds=twin.timeouts.stale_after_s), twin.buoy
         samples = self._store.samples(
-            cage, stream=buoy, start=start - stale, end=end, limit=_MOST, withdrawn=False
+            self._name, stream=buoy, start=start - stale, end=end, limit=_MOST, withdrawn=False
         )
-        if len(self._known) > _SEAS:
+        if sum(map(len, self._known.values())) > _SEAS:
             self._known.clear()
-        count = round((end - start) / _MINUTE)
-        damage = damage_of_minutes(self._twin, samples, start, count, known=self._known)
-        damage = damage[:, self._columns]
-        valid = np.asarray(np.isfinite(damage).all(axis=1))
-        cuts = {start, end, *_steps(floor_time(start, _HOUR) + _HOUR, end, _HOUR)}
-        cuts |= {t for _, t in self._begins if start < t < end}
         rows = list[Stretch]()
-        for begin, until in pairwise(sorted(cuts)):
-            some = slice(round((begin - start) / _MINUTE), round((until - start) / _MINUTE))
-            sums = damage[some][valid[some]].sum(axis=0).tolist()
-            minutes = int(valid[some].sum())
-            rows.append(
-                Stretch(
-                    t=begin,
-                    damage=dict(zip(self.lines, sums, strict=True)),
-                    valid=minutes,
-                    missing=len(valid[some]) - minutes,
-                )
-            )
+        changes = {t for t in self._past.replacements() if start < t < end}
+        for first, last in pairwise(sorted({start, end, *changes})):
+            past, count = self._past.of(first), round((last - first) / _MINUTE)
+            names, known = past.twin.models.lines.names, self._known[past.id]
+            damage = damage_of_minutes(past.twin, samples, first, count, known=known)
+            damage = damage[:, [names.index(line) for line in self.lines]]
+            valid = np.asarray(np.isfinite(damage).all(axis=1))
+            cuts = {first, last, *_steps(floor_time(first, _HOUR) + _HOUR, last, _HOUR)}
+            cuts |= {t for _, t in self._begins if first < t < last}
+            for begin, until in pairwise(sorted(cuts)):
+                some = slice(round((begin - first) / _MINUTE), round((until - first) / _MINUTE))
+                sums = damage[some][valid[some]].sum(axis=0).tolist()
+                shares, minutes = dict(zip(self.lines, sums, strict=True)), int(valid[some].sum())
+                missing = len(valid[some]) - minutes
+                rows.append(Stretch(begin, shares, minutes, missing, past.id))
         return rows
 
 

@@ -43,17 +43,19 @@ class LiveTwin:
         desk: AlarmDesk,  # where its alarms are assessed
         tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
-        name, store, twin = past.cage, past.store, past.twin
-        self._name, self._twin, self._store, self._clock = name, twin, store, clock
-        self._desk, self._past = desk, past
+        self._name, self._store, self._clock, self._desk = past.cage, past.store, clock, desk
         self._period = timedelta(seconds=tick_s * clock.speed)
-        self.damage = DamageCounter(name=name, twin=twin, store=store)
-        self.clocks = ClockFaults(clock, streams=len(streams_of(twin)))
+        self.clocks = ClockFaults(clock, streams=len(streams_of(past.twin)))
         self._went_back: list[tuple[Step, float]] = []  # and how far from there it is now [s]
         self._withdrawing: list[tuple[Step, str]] = []
         self._reinstating: list[tuple[Step, str]] = []
-        self.begin()
+        self.follow(past)
         self._catch_up()
+
+    def follow(self, past: Past) -> Answered:
+        """Answer by a twin from now on, from what is stored."""
+        self._past, self._twin, self.damage = past, past.twin, DamageCounter(past)
+        return self.begin()
 
     def begin(self) -> Answered:
         """Fold the state from what is stored, as at a start."""
@@ -130,7 +132,7 @@ class LiveTwin:
 
     def _adapt_until(self, now: datetime) -> Adaptation | None:
         """Adapt the intervals to the blocks that ended while nobody was there."""
-        kept, until = self._store.adaptation(self._name, at=now), block_begin(now)
+        kept, until = self._past.adaptation(now), block_begin(now)
         if kept is None:  # none were kept before a stop, or a clock that went back took them
             missed = list(self._past.adaptations(None, until - _UNKEPT, until))
         elif kept.t is None:  # of 0.1.0, from now on
@@ -158,22 +160,28 @@ class LiveTwin:
             if len(self._folded) % _AT_ONCE == 0:
                 return
         self._keep(self._folded, refold=refold)
-        last = self._store.adaptation(self._name, at=now)
+        last = self._past.adaptation(now)
         self.state = self.state.with_factors(last.factors if last else None)
         self._refold, self._folded = self._store.refold(self._name), None
 
     def _folding(self, refold: Refold) -> Iterator[Adaptation]:
-        before = refold.t - timedelta(microseconds=1)
-        kept, start = self._store.adaptation(self._name, at=before), refold.t
+        start = self._first_of(refold)
+        kept = self._past.adaptation(start - timedelta(microseconds=1))
         while start <= (end := block_begin(self._clock.now())):
             for one in self._past.adaptations(kept, start, end):
                 kept = one
                 yield one
             start = end + ADAPTATION_BLOCK
 
+    def _first_of(self, refold: Refold) -> datetime:
+        """Leave what was adapted under a twin before as it was."""
+        since = self._past.since
+        return max(refold.t, block_begin(since) + ADAPTATION_BLOCK) if since else refold.t
+
     def _keep(self, kept: Sequence[Adaptation], *, refold: Refold | None = None) -> None:
         """Keep factors; where the disk takes none they are found again after the next start."""
-        done = self._store.keep_adaptations(self._name, kept, refold=refold)
+        start = self._first_of(refold) if refold else None
+        done = self._store.keep_adaptations(self._name, kept, refold=refold, start=start)
         if refold is not None:
             try:
                 done.result()

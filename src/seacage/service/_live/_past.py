@@ -8,8 +8,10 @@ from functools import partial
 import numpy as np
 import structlog
 
-from seacage.conventions import Flag, InputError
+from seacage.conventions import Flag, InputError, ModelError
 from seacage.records import Amendment, Record, Sample, instant
+from seacage.service._live._clock import floor_time
+from seacage.service._live._twin_shelf import TwinShelf, check_fit
 from seacage.service._schemas._samples import BUOY_KEYS
 from seacage.service._store._adaptations import Adaptation
 from seacage.service._store._store import Store
@@ -26,7 +28,7 @@ from seacage.twin import (
 
 _MOST = 1_000_000  # samples of a stream in the minutes that a twin remembers
 _NEIGHBOURS = 4  # samples on each side of a time, of which one is sound at least
-_INSTANT = timedelta(microseconds=1)
+_INSTANT, _MINUTE = timedelta(microseconds=1), timedelta(minutes=1)
 _log = structlog.get_logger(__name__)
 
 
@@ -47,6 +49,35 @@ class Past:
     twin: Twin
     store: Store
     cage: str
+    id: str = ""  # hash of the twin
+    since: datetime | None = None  # from when on it is in force; None for always
+    shelf: TwinShelf | None = None  # with the twins that were in force before
+
+    def of(self, t: datetime) -> "Past":
+        """Return the same of the twin that was in force at a time, where it is still kept."""
+        if self.shelf is None or self.since is None or t >= self.since:
+            return self
+        term = self.shelf.log(self.cage).at(t)
+        try:
+            twin = self.shelf.read(term.twin)
+            check_fit(twin, self.twin)
+        except (InputError, ModelError) as error:
+            _log.warning("past by the twin of now", cage=self.cage, reason=str(error))
+            return self
+        return replace(self, twin=twin, id=term.twin, since=term.since)
+
+    def replacements(self) -> Iterator[datetime]:
+        """Name the whole minutes from which on another twin was in force."""
+        for term in self.shelf.log(self.cage).terms if self.shelf and self.since else ():
+            if term.since is not None:
+                yield floor_time(term.since - _INSTANT, _MINUTE) + _MINUTE
+
+    def adaptation(self, at: datetime) -> Adaptation | None:
+        """Read how far the intervals were adapted; those of a twin before are not this one's."""
+        kept = self.store.adaptation(self.cage, at=at)
+        if self.since is None or (kept and kept.t and kept.t > self.since):
+            return kept
+        return Adaptation(t=block_begin(self.since), factors="{}")
 
     def state_at(
         self,
@@ -60,7 +91,7 @@ class Past:
         It is what a service would have shown that had got all samples until then in the order of
         their times, with the flags that those had shown, and intervals adapted as far as then.
         """
-        kept = kept or self.store.adaptation(self.cage, at=at)
+        kept = kept or self.adaptation(at)
         state = self._memory_at(at, kept=kept, until=block_begin(at))
         state, events = self.twin.step(state, None, at)
         return state, answer_in(events)

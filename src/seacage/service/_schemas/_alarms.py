@@ -56,7 +56,10 @@ class Handling(AbstractRequest):
 
 
 class JournalLine(AbstractAnswer):
-    """What happened to an alarm, when, and by whom where a person acted."""
+    """What happened to an alarm, when, and by whom where a person acted.
+
+    ``twin`` is the hash of the twin in force then, empty where it is not known.
+    """
 
     alarm: str
     action: str
@@ -65,6 +68,7 @@ class JournalLine(AbstractAnswer):
     who: str
     why: str
     quiet: bool
+    twin: str = ""
 
 
 class Journal(AbstractAnswer):

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from seacage.service._schemas._alarms import LONGEST_WORDS
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
 from seacage.service._schemas._state import Concern
 
@@ -29,6 +30,13 @@ class LinePlace(AbstractAnswer):
     name: str
     kind: str
     ends_m: list[list[float]]
+
+
+class TwinReplacement(AbstractRequest):
+    """Folder of a twin on the service's machine, or null for the twin before, and why."""
+
+    folder: Annotated[str, Field(max_length=1000, pattern=r"^[^\x00]+$")] | None
+    why: Annotated[str, Field(max_length=LONGEST_WORDS)] = ""
 
 
 class Topology(AbstractAnswer):

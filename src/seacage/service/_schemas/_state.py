@@ -152,10 +152,12 @@ class State(AbstractAnswer):
     ``tp_assumed`` says that the period of the waves is not known, and that the loads of lines are
     over its distribution at the same height.
     ``amended`` holds the readings of the last minutes whose flags grew worse after they came.
+    ``twin`` is the hash of the twin that answers: 16 digits of its manifest's SHA-256.
     """
 
     cage: str
     t: datetime
+    twin: str = ""
     age_s: float | None
     valid: bool
     in_domain: bool
@@ -222,8 +224,10 @@ class History(AbstractAnswer):
 
     ``thinned`` says that there were more readings than were asked for: these are the first, the
     last, and the calmest and the fastest water of equal parts between. Intervals are as trained.
+    All answers are by the twin now in force, whose hash is ``twin``.
     """
 
+    twin: str = ""
     t: list[datetime]
     valid: list[bool]
     in_domain: list[bool]

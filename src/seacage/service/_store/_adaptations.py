@@ -39,11 +39,15 @@ class Refold:
 
 
 def keep_adaptations(
-    session: AbstractSession, cage: str, kept: Sequence[Adaptation], refold: Refold | None
+    session: AbstractSession,
+    cage: str,
+    kept: Sequence[Adaptation],
+    refold: Refold | None,
+    start: datetime | None,
 ) -> None:
     """Keep factors of several times; of a refold, in place of those that were there."""
     if refold is not None:
-        session.rows(_CUT, (cage, microseconds(refold.t)))
+        session.rows(_CUT, (cage, microseconds(start or refold.t)))
         session.rows(_FOLDED, (cage, microseconds(refold.t), microseconds(refold.touched)))
     rows = [(cage, microseconds(one.t), one.factors) for one in kept if one.t is not None]
     session.each(_KEEP, [with_checksum("adaptation", *row) for row in rows])

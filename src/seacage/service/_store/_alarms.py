@@ -15,7 +15,7 @@ ON CONFLICT (cage) DO UPDATE SET book = excluded.book, crc = excluded.crc"""
 _KEEP_LINE = "INSERT INTO journal (cage, t, line, crc) VALUES (?, ?, ?, ?)"
 _LINES = "SELECT t, line, crc FROM journal WHERE cage = ? AND t >= ? AND t < ? ORDER BY "
 _BOOK = "SELECT book, crc FROM alarm_book WHERE cage = ?"
-_KEYS = ("alarm", "action", "value", "who", "why", "quiet")  # of a line
+_KEYS = ("alarm", "action", "value", "who", "why", "quiet", "twin")  # of a line
 _ORDERS = {True: "t DESC, number DESC LIMIT ?", False: "t, number LIMIT ?"}
 
 

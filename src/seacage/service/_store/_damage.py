@@ -21,7 +21,7 @@ _ROWS = "SELECT t, sums, crc FROM damage WHERE cage = ? ORDER BY t"
 _BEGINS = "SELECT line, t, crc FROM damage_begin WHERE cage = ? ORDER BY t"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Stretch:
     """What a stretch of time did to the lines of a cage."""
 
@@ -29,6 +29,7 @@ class Stretch:
     damage: dict[str, float]  # share of each line's life [-]
     valid: int  # minutes with an answer
     missing: int  # minutes without
+    twin: str = ""  # hash of the twin that answered; empty where it is not known
 
 
 def keep_damage(
@@ -36,8 +37,10 @@ def keep_damage(
 ) -> None:
     """Keep the stretches of a span in place of those that were there."""
     session.rows(_CUT, (cage, *map(microseconds, span)))
-    sums = [(microseconds(row.t), json.dumps([row.damage, row.valid, row.missing])) for row in rows]
-    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in sums])
+    sums = [json.dumps([one.damage, one.valid, one.missing, one.twin]) for one in rows]
+    times = [microseconds(one.t) for one in rows]
+    kept = zip(times, sums, strict=True)
+    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in kept])
 
 
 def begin_damage(
@@ -68,7 +71,7 @@ def damage_of(
     """Read all stretches of a cage, and from when on its lines were counted, in time order."""
     rows = list[Stretch]()
     for t, sums in session.intact("damage", _ROWS, (cage,), (cage,)):
-        damage, valid, missing = json.loads(sums)
-        rows.append(Stretch(t=moment_of(t), damage=damage, valid=valid, missing=missing))
+        # Rows of before 0.2.0 do not name a twin.
+        rows.append(Stretch(moment_of(t), *json.loads(sums)))
     begins = session.intact("damage_begin", _BEGINS, (cage,), (cage,))
     return rows, [(line, moment_of(t)) for line, t in begins]

@@ -271,10 +271,13 @@ class Store:
         *,
         # What was asked for by ``refold`` and is done: all from then on is replaced
         refold: Refold | None = None,
+        start: datetime | None = None,  # and from when on, if that is not all of it
     ) -> "Future[None]":
         """Keep how far the intervals of a cage's twin were adapted."""
         rows = tuple(kept)
-        return self._writer.ask(lambda session: keep_adaptations(session, cage, rows, refold))
+        return self._writer.ask(
+            lambda session: keep_adaptations(session, cage, rows, refold, start)
+        )
 
     def adaptation(self, cage: str, *, at: datetime) -> Adaptation | None:
         """Read the factors in force at a time; None where none were kept until then."""

@@ -22,6 +22,7 @@ class Action(StrEnum):
     OUT_OF_SERVICE = "out of service"
     IN_SERVICE = "in service"
     RESET = "reset"  # a line's count of damage
+    REPLACED = "replaced"  # the twin of the cage, which the line names in place of an alarm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,6 +89,7 @@ class AlarmEvent:
     why: str = ""
     # Suppressed, so that nobody is notified: the alarm is shelved or out of service
     quiet: bool = False
+    twin: str = ""  # hash of the twin in force; empty where it is not known
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -44,6 +44,11 @@ class FaultDetector:
         monitors = {name: monitor.interrupted() for name, monitor in self.monitors.items()}
         return replace(self, monitors=monitors, sums=BlockSums())
 
+    def relearning(self) -> Self:
+        """Return a copy for other residuals: of these, only how long sensors repeat is kept."""
+        monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
+        return type(self)(monitors=monitors)
+
     def stepped(
         self,
         # The twin, its state, and its answer now

@@ -87,8 +87,8 @@ def write_folder(
 
 def read_folder(
     folder: Path, *, key: bytes | None = None
-) -> tuple[dict[str, object], dict[str, np.ndarray]]:
-    """Read settings and arrays, once every byte agrees with the manifest.
+) -> tuple[dict[str, object], dict[str, np.ndarray], str]:
+    """Read settings, arrays and the manifest's SHA-256, once every byte agrees with the manifest.
 
     With a key the manifest must be signed by it; without one a signature is passed by.
 
@@ -123,7 +123,8 @@ def read_folder(
     settings: object = parse_json(contents[SETTINGS], str(folder / SETTINGS), refusal=ModelError)
     if not isinstance(settings, dict):
         raise ModelError(f"{folder / SETTINGS} holds no settings.")
-    return cast("dict[str, object]", settings), _arrays(contents[ARRAYS], folder / ARRAYS)
+    arrays = _arrays(contents[ARRAYS], folder / ARRAYS)
+    return cast("dict[str, object]", settings), arrays, _sha256(manifest)
 
 
 def _content(folder: Path, name: str) -> bytes:

@@ -315,6 +315,7 @@ def _level_one(
         campaign_seed=campaign.seed,
         campaign_sha256=campaign.sha256,
         cases=len(rows),
+        physics=campaign.physics,
         kernel=kernel,
         origin=Origin.COMPUTED,
         hidden_sha256=None,

@@ -52,6 +52,7 @@ COMMANDS = [
     "token new",
     "token list",
     "token revoke",
+    "twin replace",
     "archive write",
     "archive read",
     "archive check",

@@ -25,7 +25,8 @@ def swum(idle: Running) -> Running:
     """A service whose buoy has spoken, and whose cage says where it lies."""
     models = erring_twin(cases=60).models
     placed = models.cage.altered(site={"latitude_deg": 63.5, "longitude_deg": 8.2})
-    idle.cage.twin = replace(erring_twin(cases=60), models=replace(models, cage=placed))
+    twin = replace(erring_twin(cases=60), models=replace(models, cage=placed))
+    idle.cage.past = replace(idle.cage.past, twin=twin)
     idle.post(buoy(-2, speed=0.4, to=70.0))
     eventually(idle.state, lambda state: state["valid"], seconds=60.0)
     return idle

@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from seacage.service._live._alarm_desk import AlarmDesk
+from seacage.service._live._past import Past
 from seacage.service._store._store import Store
 from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy
@@ -20,7 +21,7 @@ def store(tmp_path: Path):
 
 def desk_of(store: Store) -> AlarmDesk:
     twin = stand_in_twin()
-    return AlarmDesk(cage="ace", twin=twin, store=store, policy=AlarmPolicy.default(twin.cage))
+    return AlarmDesk(Past(twin, store, "ace"), policy=AlarmPolicy.default(twin.cage))
 
 
 def looked(desk: AlarmDesk) -> set[str]:

@@ -12,6 +12,7 @@ from running_service import eventually, running
 from seacage.conventions import YEAR, Flag, InputError
 from seacage.records import Sample
 from seacage.service._live._damage import DamageCounter, LineDamage
+from seacage.service._live._past import Past
 from seacage.service._store._store import Store, open_store
 from seacage.twin import Metocean
 from stores import schema
@@ -46,7 +47,7 @@ def put(store: Store, *samples: Sample, now: datetime = NOW) -> None:
 
 
 def counter(store: Store) -> DamageCounter:
-    return DamageCounter(name="ace", twin=wavy_twin(), store=store)
+    return DamageCounter(Past(wavy_twin(), store, "ace"))
 
 
 def rate(**other: float) -> float:

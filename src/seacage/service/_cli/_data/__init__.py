@@ -1,1 +1,1 @@
-"""Commands about what a service keeps: its samples, its tokens, and a backup of all."""
+"""Commands about what a service keeps: its samples, tokens and twins, and a backup of all."""
