@@ -11,7 +11,7 @@ from seacage.studies._fidelity._claims import THOUSANDTH
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SECTORS, SensorGap
 from seacage.studies._fidelity._null_case import Gains, NullCase
-from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescalings
+from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
 from seacage.studies._page import embed
 
 ORIGIN = Origin.VIRTUAL_FIELD  # of every truth and every reading here
@@ -19,7 +19,10 @@ _QUANTITIES = {"m": "rise", "kN": "tension"}
 
 
 def page_values(
-    gaps: Sequence[SensorGap], rescalings: Rescalings, null: NullCase, fouling: FoulingGap
+    gaps: Sequence[SensorGap],
+    rescalings: Sequence[Rescaling],
+    null: NullCase,
+    fouling: FoulingGap,
 ) -> dict[str, object]:
     """Figures and names of the page besides the scores."""
     titles = [f"{gap.sensor}: {_QUANTITIES[gap.unit]} [{gap.unit}]" for gap in gaps]
@@ -33,8 +36,8 @@ def page_values(
             titles, SECTORS, by_sector["truth"], by_sector["low"], origin=ORIGIN
         ),
         "left": left_figure(
-            [one.sensor for one in rescalings.sensors],
-            np.array([one.left for one in rescalings.sensors]),
+            [one.sensor for one in rescalings],
+            np.array([one.left for one in rescalings]),
             least=LEAST_LEFT,
             origin=ORIGIN,
         ),
@@ -50,7 +53,6 @@ def page_values(
         ),
     }
     return {
-        "emulation_mae": rescalings.emulation_mae,
         "sectors": list(SECTORS),
         "by_sector": by_sector,
         "growths": [f"{growth:g}" for growth in fouling.growth],
