@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import Result
+from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._kernel._march import Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
@@ -20,6 +20,19 @@ from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._settle import rest_shape
 from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
+
+
+def nodes_of(
+    cage: Cage | Structure, numbers: Sequence[int] | None, what: str
+) -> Int[np.ndarray, " kept"]:
+    """Some nodes of a cage, or all. Raises InputError, as ``what``: one that the net has not."""
+    nodes = np.array(range(cage.node_count) if numbers is None else numbers, dtype=np.int64)
+    if np.any((nodes < 0) | (nodes >= cage.node_count)):
+        raise InputError(
+            f"{what} = {nodes.tolist()} has a node that the net has not. "
+            f"Give nodes from 0 … {cage.node_count - 1}."
+        )
+    return nodes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
