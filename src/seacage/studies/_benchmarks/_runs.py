@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from seacage.studies._benchmarks._methods import Method, harness
+from seacage.studies._benchmarks._methods import HARNESS, Method
 from seacage.studies._benchmarks._problems import Problem, Sample
 from seacage.surrogates import coverage, crps, mnll, rmse
 
@@ -119,7 +119,7 @@ def _job_inputs(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarr
 
 def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], None]) -> str:
     """Let the method answer, and return the last line of its errors if it failed."""
-    command = [method.python, harness(), method.script, method.name, out, *jobs]
+    command = [method.python, HARNESS, method.script, method.name, out, *jobs]
     complaints = out / "stderr.txt"
     with (
         complaints.open("w", encoding="utf-8") as error,
