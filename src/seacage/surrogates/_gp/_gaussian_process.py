@@ -265,18 +265,13 @@ class FittedGaussianProcess:
         outputs = len(self.centre)
         if not 0 <= index < outputs:
             raise InputError(f"output {index} does not exist; this model has {outputs}, from 0.")
-        return self.combined(np.eye(outputs)[index])
-
-    def combined(self, share: Float[np.ndarray, " output"]) -> "FittedGaussianProcess":
-        """The sum of the outputs times their share, as a model that answers (row,)."""
-        members = [member.combined(share, amplitude=self.amplitude) for member in self.members]
         return replace(
             self,
-            members=tuple(members),
-            centre=np.array([self.centre @ share]),
-            amplitude=np.array([np.linalg.norm(self.amplitude * share)]),
+            members=tuple(member.output(index) for member in self.members),
+            centre=self.centre[[index]],
+            amplitude=self.amplitude[[index]],
             single=True,
-            line=self.line @ share[:, None],
+            line=self.line[:, [index]],
         )
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
