@@ -31,33 +31,15 @@ _MARGIN = 7.0  # water drawn outside the frame [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Motion:
-    """What an animation shows: a cage's shapes and tensions, one after the other.
+    """What an animation shows: a cage's shapes and tensions, one after the other."""
 
-    Parameters
-    ----------
-    time
-        Of each shape, rising evenly, on the clock of ``waves`` [s].
-    node_position
-        Of all nodes [m].
-    bridle_tension
-        [N].
-    rest_position
-        What displacement is measured from [m].
-    sea
-        Its current goes to the right; its numbers stand above the picture.
-    waves
-        Of the surface that is drawn; a level one if None.
-    origin
-        Where the shapes come from.
-    """
-
-    time: Float[np.ndarray, " t"]
-    node_position: Float[np.ndarray, "t node 3"]
-    bridle_tension: Float[np.ndarray, "t bridle"]
-    rest_position: Float[np.ndarray, "node 3"]
-    sea: SeaState
-    waves: Waves | None = None
-    origin: Origin = Origin.COMPUTED
+    time: Float[np.ndarray, " t"]  # of each shape, rising evenly, on the clock of ``waves`` [s]
+    node_position: Float[np.ndarray, "t node 3"]  # of all nodes [m]
+    bridle_tension: Float[np.ndarray, "t bridle"]  # [N]
+    rest_position: Float[np.ndarray, "node 3"]  # what displacement is measured from [m]
+    sea: SeaState  # its current goes to the right; its numbers stand above the picture
+    waves: Waves | None = None  # of the surface that is drawn; a level one if None
+    origin: Origin = Origin.COMPUTED  # where the shapes come from
 
     def __post_init__(self) -> None:
         if len(self.time) < 4:
