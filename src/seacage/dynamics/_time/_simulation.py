@@ -17,8 +17,8 @@ from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
+from seacage.dynamics._physics._wake import wake_share
 from seacage.dynamics._settle import rest_shape
-from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
 
 
@@ -67,16 +67,18 @@ class Simulation:
         return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
 
     def net_laws(self, assembly: Assembly, laws: Sequence[MovingLaw], ocean: Ocean) -> list[NetLaw]:
-        """The law of the netting in each case's current, case by case."""
-
-        def of(law: MovingLaw, case: slice) -> NetLaw:
-            one = replace(ocean, waves=ocean.waves[case], current=ocean.current[case])
-            share = wakes(assembly, law, one, wake=self.wake)
+        """The law of the netting in each case's current, at the depths of the design shape."""
+        found, depth = list[NetLaw](), assembly.panels.depth
+        for law, current in zip(laws, ocean.current, strict=True):
+            share = np.ones((1, len(depth)))
+            if self.wake:
+                at_panels = [np.interp(depth, -ocean.level_z, axis) for axis in current.T]
+                share = wake_share(assembly, law, np.stack(at_panels, axis=1)[None])
             if law == "morison":
-                return NetLaw(name=law, wake=share, twine_drag=self.twine_drag)
-            return NetLaw(name=law, wake=share, tuning=self.tuning)
-
-        return [of(law, slice(case, case + 1)) for case, law in enumerate(laws)]
+                found.append(NetLaw(name=law, wake=share, twine_drag=self.twine_drag))
+            else:
+                found.append(NetLaw(name=law, wake=share, tuning=self.tuning))
+        return found
 
     @property
     def rest(self) -> Float[np.ndarray, "node 3"]:
