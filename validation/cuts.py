@@ -17,7 +17,7 @@ from seacage.dynamics._parts._assembly import Assembly, Body
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._loads import cylinder_force, net_force
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_cylinder_force
-from seacage.dynamics._time._forcing import wakes
+from seacage.dynamics._physics._wake import wake_share
 from seacage.dynamics._time._simulate import HOLD
 from seacage.ocean import SeaState, Waves, sample_waves, water_motion
 from validation._row import Kind, Row, Section
@@ -132,8 +132,9 @@ class Moving:
         assembly, depth = scale_mass(anchor_assembly(ACE), TIME_STEP)[0], ACE.site.water_depth
         waves = [sample_waves(sea, seed=seed, depth=depth) for seed, sea in enumerate(seas)]
         current = np.array([sea.current_velocity for sea in seas])
+        at_panels = np.repeat(current[:, None], len(assembly.panels.depth), axis=1)
         ocean = Ocean(waves=waves, current=current[:, None], level_z=np.zeros(1), depth=depth)
-        law = NetLaw(name=LAW, wake=wakes(assembly, LAW, ocean, wake=True))
+        law = NetLaw(name=LAW, wake=wake_share(assembly, LAW, at_panels))
         steps = Steps(
             time_step=TIME_STEP,
             each=round(REFRESH / TIME_STEP),

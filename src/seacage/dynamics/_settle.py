@@ -21,58 +21,38 @@ from seacage.ocean import SeaState, wave_velocity_variance
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Response:
-    """Response of a cage to a current: one case without the leading axis, or several with it.
+    """Response of a cage to a current: one case without the leading axis, or several with it."""
 
-    Attributes
-    ----------
-    node_position, node_displacement
-        Where each node of the net is, and how far from its place in still water [m].
-    bridle_tension
-        Of each bridle [N].
-    line_names, line_tension
-        Of all lines of the mooring, the bridles first; an anchor line's at its corner, a buoy
-        line's as its buoy lifts [N].
-    anchor_load
-        Of each anchor line on its anchor, as the anchor lines are numbered, or of all lines on
-        each of a structure's anchors: what points up is uplift, what points down lies on the sea
-        bed. Springs have none [N].
-    net_force
-        The water's load on the netting: zero in still water [N].
-    volume, volume_fraction
-        Enclosed by the net [m3], and over that in still water [-].
-    residual
-        Largest force left on a node [N].
-    result
-        Of ``seacage.conventions.Result``: a case that did not converge carries its last
-        shape, one that diverged NaN; one that drowned is an equilibrium of a cage under water.
-        ``has_answer`` says which are to learn from.
-    equilibria
-        Number of different equilibria that were found from the given number of starts.
-    equilibrium_spread
-        How far a node's places in two of them are apart at most; 0 where there is one [m].
-    unstable
-        Whether the cage would creep away from this equilibrium on its own, proved by the
-        sign of the stiffness matrix's determinant. False proves nothing: a net may still
-        sway about it, which only ``simulate`` shows.
-    warnings
-        Sentences on where a law was used beyond what is known of it.
-    """
-
+    # Where each node of the net is, and how far from its place in still water [m]
     node_position: Float[np.ndarray, "*case node 3"]
     node_displacement: Float[np.ndarray, "*case node 3"]
-    bridle_tension: Float[np.ndarray, "*case bridle"]
+    bridle_tension: Float[np.ndarray, "*case bridle"]  # of each bridle [N]
+    # Of all lines of the mooring, the bridles first; an anchor line's at its corner, a buoy line's
+    # as its buoy lifts [N]
     line_names: tuple[str, ...]
     line_tension: Float[np.ndarray, "*case line"]
+    # Of each anchor line on its anchor, as the anchor lines are numbered, or of all lines on each
+    # of a structure's anchors: what points up is uplift, what points down lies on the sea bed.
+    # Springs have none [N]
     anchor_load: Float[np.ndarray, "*case anchor 3"]
-    net_force: Float[np.ndarray, "*case 3"]
+    net_force: Float[np.ndarray, "*case 3"]  # the water's load on the netting: 0 in still water [N]
+    # Enclosed by the net [m3], and over that in still water [-]
     volume: Float[np.ndarray, "*case"]
     volume_fraction: Float[np.ndarray, "*case"]
-    residual: Float[np.ndarray, "*case"]
+    residual: Float[np.ndarray, "*case"]  # largest force left on a node [N]
+    # Of ``seacage.conventions.Result``: a case that did not converge carries its last shape, one
+    # that diverged NaN; one that drowned is an equilibrium of a cage under water. ``has_answer``
+    # says which are to learn from
     result: Int[np.ndarray, "*case"]
+    # Number of different equilibria that were found from the given number of starts, and how far a
+    # node's places in two of them are apart at most; 0 where there is one [m]
     equilibria: Int[np.ndarray, "*case"]
     equilibrium_spread: Float[np.ndarray, "*case"]
+    # Whether the cage would creep away from this equilibrium on its own, proved by the sign of the
+    # stiffness matrix's determinant. False proves nothing: a net may still sway about it, which
+    # only ``simulate`` shows
     unstable: Bool[np.ndarray, "*case"]
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()  # sentences on where a law was used beyond what is known of it
 
 
 def settle(

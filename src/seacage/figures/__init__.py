@@ -4,7 +4,7 @@ from seacage.figures._animation import Motion, write_animation
 from seacage.figures._benchmark import Contest, cost_figure, coverage_figure, error_figure
 from seacage.figures._comparison import Comparison, density_figure, rows_figure, series_figure
 from seacage.figures._drawing import cage_drawing_figure
-from seacage.figures._fidelity import Panel, fouling_figure, gain_figure, left_figure, sector_figure
+from seacage.figures._fidelity import fouling_figure, gain_figure, left_figure, sector_figure
 from seacage.figures._net import net_figure
 from seacage.figures._quality import quality_figure
 from seacage.figures._rose import tension_rose_figure
@@ -20,7 +20,6 @@ __all__ = [
     "Comparison",
     "Contest",
     "Motion",
-    "Panel",
     "ShapeView",
     "TrainingScores",
     "VolumeMark",

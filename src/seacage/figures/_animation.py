@@ -1,14 +1,16 @@
 """A minute of a cage in waves as a looping picture."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from jaxtyping import Float, Int, UInt8
+from jaxtyping import Float, Int
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Origin, Progress, towards
+from seacage.figures._net import draw_frame
 from seacage.figures._style import FAINT, INK, MULTI, MUTED, caption, style
 from seacage.figures._types import Axes, Collection, Figure
 from seacage.ocean import SeaState, Waves, surface_elevation
@@ -29,33 +31,15 @@ _MARGIN = 7.0  # water drawn outside the frame [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Motion:
-    """What an animation shows: a cage's shapes and tensions, one after the other.
+    """What an animation shows: a cage's shapes and tensions, one after the other."""
 
-    Parameters
-    ----------
-    time
-        Of each shape, rising evenly, on the clock of ``waves`` [s].
-    node_position
-        Of all nodes [m].
-    bridle_tension
-        [N].
-    rest_position
-        What displacement is measured from [m].
-    sea
-        Its current goes to the right; its numbers stand above the picture.
-    waves
-        Of the surface that is drawn; a level one if None.
-    origin
-        Where the shapes come from.
-    """
-
-    time: Float[np.ndarray, " t"]
-    node_position: Float[np.ndarray, "t node 3"]
-    bridle_tension: Float[np.ndarray, "t bridle"]
-    rest_position: Float[np.ndarray, "node 3"]
-    sea: SeaState
-    waves: Waves | None = None
-    origin: Origin = Origin.COMPUTED
+    time: Float[np.ndarray, " t"]  # of each shape, rising evenly, on the clock of ``waves`` [s]
+    node_position: Float[np.ndarray, "t node 3"]  # of all nodes [m]
+    bridle_tension: Float[np.ndarray, "t bridle"]  # [N]
+    rest_position: Float[np.ndarray, "node 3"]  # what displacement is measured from [m]
+    sea: SeaState  # its current goes to the right; its numbers stand above the picture
+    waves: Waves | None = None  # of the surface that is drawn; a level one if None
+    origin: Origin = Origin.COMPUTED  # where the shapes come from
 
     def __post_init__(self) -> None:
         if len(self.time) < 4:
@@ -86,7 +70,6 @@ def write_animation(
     cage: Cage,
     motion: Motion,
     *,
-    bridle: int | None = None,
     frames_per_second: float = 6.25,
     width: int = 640,
     progress: Progress | None = None,
@@ -94,8 +77,9 @@ def write_animation(
     """Write a motion as a GIF that runs in real time and loops.
 
     Seen from the side and a little from above: the net coloured by its displacement, the bridles
-    by their tension, the water's surface, and one bridle's tension as a running trace below. Left
-    out: the motion of the frame's corners, which are drawn where they are in still water.
+    by their tension, the water's surface, and the tension of the bridle that is fullest on average
+    as a running trace below. Left out: the motion of the frame's corners, which are drawn where
+    they are in still water.
 
     Raises InputError: another ending than ``.gif``.
 
@@ -105,8 +89,6 @@ def write_animation(
         Ends in ``.gif``.
     motion
         The loop closes without a jump where the sea repeats after its last moment.
-    bridle
-        Whose tension the trace shows, from 0; the fullest on average if None.
     frames_per_second
         Six follow waves of 4 s and longer; the file grows with it.
     width
@@ -117,27 +99,29 @@ def write_animation(
     if path.suffix != ".gif":
         raise InputError(f"{path}: animations are written as GIF. End the name in .gif.")
     shown = motion.sampled(1.0 / frames_per_second)
-    traced = int(shown.bridle_tension.mean(axis=0).argmax()) if bridle is None else bridle
-    with style():
-        scene = _Scene(cage, shown, traced, width)
-        gif = Gif(colours=_colours(), seconds=1.0 / frames_per_second)
+
+    def pictures() -> Iterator[np.ndarray]:
+        scene = _Scene(cage, shown, width)
         for frame in range(len(shown.time)):
-            gif.add(scene.picture(frame))
+            yield scene.picture(frame)
             if progress is not None:
                 progress("draw", frame + 1, len(shown.time))
-    gif.write(path)
+
+    with style():
+        write_gif(path, pictures(), colours=_colours(), seconds=1.0 / frames_per_second)
     return path
 
 
 class _Scene:
     """A figure whose moving parts are set anew for each frame."""
 
-    def __init__(self, cage: Cage, motion: Motion, bridle: int, width: int) -> None:
+    def __init__(self, cage: Cage, motion: Motion, width: int) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.collections import LineCollection, PolyCollection
         from matplotlib.figure import Figure
 
-        self._cage, self._motion, self._bridle = cage, motion, bridle
+        self._cage, self._motion = cage, motion
+        self._bridle = int(motion.bridle_tension.mean(axis=0).argmax())
         self._eye = _Eye.across(motion.sea.current_to)
         figure = Figure(figsize=_SIZE, dpi=width / _SIZE[0])
         self._canvas = FigureCanvasAgg(figure)
@@ -154,10 +138,10 @@ class _Scene:
         _colour(axes, self._lines, _TENSION, _TENSION_LEVELS, most)
         (self._collar,) = axes.plot([], [], color=INK, lw=2.6, solid_joinstyle="round", zorder=5)
         (self._mark,) = axes.plot([], [], "o", color=MULTI, ms=5.5, mec="white", mew=0.8, zorder=6)
-        _draw_frame(axes, cage, self._eye)
+        draw_frame(axes, cage, self._eye.view)
         _write_legend(axes, self._net, self._lines)
         _write_head(axes, cage, motion)
-        self._past, self._now = _trace(figure, cage, motion, bridle)
+        self._past, self._now = _trace(figure, cage, motion, self._bridle)
 
     def picture(self, frame: int) -> np.ndarray:
         """Pixels of one moment, rows × columns × RGB."""
@@ -183,46 +167,38 @@ class _Scene:
         return np.asarray(self._canvas.buffer_rgba())[:, :, :3].copy()
 
 
-class Gif:
-    """A GIF of few, chosen colours, so that it stays small and flat areas stay flat.
+def write_gif(
+    path: Path, pictures: Iterable[np.ndarray], *, colours: list[str], seconds: float
+) -> None:
+    """Write a looping GIF of few, chosen colours: it stays small, and flat areas stay flat.
 
-    ``colours``: as ``#rrggbb``, at most 255; each pixel takes the nearest. ``seconds``: between
-    pictures. A GIF counts hundredths; pictures are spread so that the whole keeps time.
+    ``pictures``: rows × columns × RGB, from 0 to 255. ``colours``: as ``#rrggbb``, at most 255;
+    each pixel takes the nearest. ``seconds``: between pictures. A GIF counts hundredths; pictures
+    are spread so that the whole keeps time.
     """
+    from PIL import Image
 
-    def __init__(self, *, colours: list[str], seconds: float) -> None:
-        from PIL import Image
-
-        if seconds < 0.02:
-            raise InputError(
-                f"Gif: a picture every {seconds:g} s; browsers slow down below 0.02 s. "
-                "Draw fewer pictures a second."
-            )
-        self._palette = Image.new("P", (1, 1))
-        self._palette.putpalette(bytes.fromhex("".join(one.removeprefix("#") for one in colours)))
-        self._seconds = seconds
-        self._pictures: list[Image.Image] = []
-
-    def add(self, pixels: UInt8[np.ndarray, "row column 3"]) -> None:
-        """Append one picture."""
-        from PIL import Image
-
-        picture = Image.fromarray(pixels)
-        self._pictures.append(picture.quantize(palette=self._palette, dither=Image.Dither.NONE))
-
-    def write(self, path: Path) -> None:
-        """Write the pictures, looping for ever."""
-        first, *others = self._pictures
-        ends = np.round(100.0 * self._seconds * np.arange(len(self._pictures) + 1)).astype(int)
-        first.save(
-            path,
-            format="GIF",
-            save_all=True,
-            append_images=others,
-            duration=(10 * np.diff(ends)).tolist(),
-            loop=0,
-            optimize=True,
+    if seconds < 0.02:
+        raise InputError(
+            f"Gif: a picture every {seconds:g} s; browsers slow down below 0.02 s. "
+            "Draw fewer pictures a second."
         )
+    palette = Image.new("P", (1, 1))
+    palette.putpalette(bytes.fromhex("".join(one.removeprefix("#") for one in colours)))
+    first, *others = (
+        Image.fromarray(pixels).quantize(palette=palette, dither=Image.Dither.NONE)
+        for pixels in pictures
+    )
+    ends = np.round(100.0 * seconds * np.arange(len(others) + 2)).astype(int)
+    first.save(
+        path,
+        format="GIF",
+        save_all=True,
+        append_images=others,
+        duration=(10 * np.diff(ends)).tolist(),
+        loop=0,
+        optimize=True,
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -311,14 +287,6 @@ def _ramp(colours: tuple[str, ...], levels: int) -> "LinearSegmentedColormap":
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("seacage", list(colours), N=levels)
-
-
-def _draw_frame(axes: Axes, cage: Cage, eye: _Eye) -> None:
-    corner = eye.project(cage.corner_position)
-    for side in range(len(corner)):
-        ends = corner[[side, (side + 1) % len(corner)]]
-        axes.plot(ends[:, 0], ends[:, 1], color=MUTED, lw=0.9, ls=(0, (5, 3)), zorder=1)
-    axes.plot(corner[:, 0], corner[:, 1], "s", color=MUTED, ms=4.5, zorder=4.5)
 
 
 def _write_head(axes: Axes, cage: Cage, motion: Motion) -> None:

@@ -1,7 +1,6 @@
 """How far a low fidelity is from the truth: by direction, by what rescaling leaves, by growth."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
@@ -13,18 +12,8 @@ from seacage.figures._types import Axes, Figure
 _WIDTH = 10.0  # of a whole page [inch]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Panel:
-    """One sensor's part of a figure; every number is computed elsewhere."""
-
-    # Its name, what is drawn and its unit, such as ``depth-1``, ``Rise``, ``m``
-    sensor: str
-    quantity: str
-    unit: str
-
-
 def sector_figure(
-    panels: Sequence[Panel],  # one for each sensor
+    titles: Sequence[str],  # of each sensor's panel, such as ``depth-1: rise [m]``
     sectors: Sequence[str],  # where the current goes
     # Means; NaN where there is none
     truth: Float[np.ndarray, "sensor sector"],
@@ -35,13 +24,12 @@ def sector_figure(
     """Mean response of the truth and of the low fidelity by direction of the current."""
     place = np.arange(len(sectors))
     with _style.style():
-        figure, axes = _style.panel_grid(len(panels), 2.05, room=0.45, sharex=True)
-        for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
+        figure, axes = _sensor_panels(titles, 2.05)
+        for number, one in enumerate(axes):
             one.bar(place - 0.21, truth[number], 0.4, color=_style.SENSOR, label="Truth")
             one.bar(place + 0.21, low[number], 0.4, color=_style.LOW, label="Low fidelity")
             one.set_xticks(place, sectors)
             one.grid(visible=False, axis="x")
-            _name_panel(one, panel)
         _explain(figure, axes[0], "Mean response by where the current goes", origin)
     return figure
 
@@ -105,7 +93,7 @@ def gain_figure(
 
 
 def fouling_figure(
-    panels: Sequence[Panel],  # one for each sensor
+    titles: Sequence[str],  # of each sensor's panel
     # At which both cages were settled [-] and [m/s]
     growth: Float[np.ndarray, " growth"],
     speed: Float[np.ndarray, " speed"],
@@ -122,22 +110,24 @@ def fouling_figure(
     shades = colormaps[_style.AMOUNT](np.linspace(0.15, 0.8, len(speed)))
     record = {"color": _style.FIT, "ms": 4.0, "label": "The record's mean"}
     with _style.style():
-        figure, axes = _style.panel_grid(len(panels), 2.0, room=0.45, sharex=True)
-        for number, (one, panel) in enumerate(zip(axes, panels, strict=True)):
+        figure, axes = _sensor_panels(titles, 2.0)
+        for number, one in enumerate(axes):
             one.axhline(0.0, color=_style.MUTED, lw=0.8)
             for shade, own, at in zip(shades, gap[..., number].T, speed.tolist(), strict=True):
                 one.plot(growth, own, "-", color=shade, lw=1.6, label=f"{at:g} m/s, settled")
             one.plot(met_growth, met_gap[:, number], "o", **record)
-            _name_panel(one, panel)
         for one in axes[-4:]:
             one.set_xlabel("Growth [-]")
         _explain(figure, axes[0], "Truth less low fidelity", origin)
     return figure
 
 
-def _name_panel(axes: Axes, panel: Panel) -> None:
-    axes.set_title(f"{panel.sensor}: {panel.quantity.lower()} [{panel.unit}]")
-    axes.tick_params(labelbottom=True)
+def _sensor_panels(titles: Sequence[str], height: float) -> tuple[Figure, list[Axes]]:
+    figure, axes = _style.panel_grid(len(titles), height, room=0.45, sharex=True)
+    for one, title in zip(axes, titles, strict=True):
+        one.set_title(title)
+        one.tick_params(labelbottom=True)
+    return figure, axes
 
 
 def _explain(figure: Figure, axes: Axes, title: str, origin: Origin) -> None:

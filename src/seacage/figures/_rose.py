@@ -1,5 +1,7 @@
 """What each bridle carries, drawn where it pulls."""
 
+from typing import cast
+
 import numpy as np
 from jaxtyping import Float
 
@@ -40,7 +42,8 @@ def tension_rose_figure(
     if not len(current_speed):
         raise InputError("tension_rose_figure: there is no case to draw. Give one or more.")
     with page(5.6, 4.7) as figure:
-        axes = _compass(figure)
+        north_up = {"projection": "polar", "theta_offset": np.pi / 2.0, "theta_direction": -1}
+        axes = cast("PolarAxes", figure.subplots(subplot_kw=north_up))
         bearing = np.deg2rad(np.array(cage.bridles.bearings) + cage.heading)
         share = 100.0 / cage.bridle_capacity
         offset, width = _fan(bearing, len(current_speed))
@@ -58,16 +61,6 @@ def tension_rose_figure(
         axes.set_title("Bridles: share of capacity", pad=18.0)
         aside(axes, str(origin), 18.0)
     return figure
-
-
-def _compass(figure: Figure) -> PolarAxes:
-    from matplotlib.projections.polar import PolarAxes
-
-    axes = figure.add_subplot(projection="polar")
-    assert isinstance(axes, PolarAxes)
-    axes.set_theta_zero_location("N")
-    axes.set_theta_direction(-1)
-    return axes
 
 
 def _colour_runs(speed: Float[np.ndarray, " case"]) -> list[tuple[float, str]]:

@@ -38,30 +38,15 @@ def wavenumber(angular_frequency: PerN, *, depth: float) -> PerN:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Waves(Rows):
-    """A sum of linear waves, each long-crested.
+    """A sum of linear waves, each long-crested."""
 
-    Parameters
-    ----------
-    amplitude
-        [m].
-    angular_frequency
-        As seen from a fixed place [rad/s].
-    wavenumber
-        [1/m]. It says how the water moves, also where a current carries the wave past faster.
-    phase
-        At the origin at time 0 [rad].
-    direction
-        Unit vector that each travels along, (east, north) [-].
-    depth
-        Of the water [m].
-    """
-
-    amplitude: Float[np.ndarray, " wave"]
-    angular_frequency: Float[np.ndarray, " wave"]
+    amplitude: Float[np.ndarray, " wave"]  # [m]
+    angular_frequency: Float[np.ndarray, " wave"]  # as seen from a fixed place [rad/s]
+    # [1/m]. It says how the water moves, also where a current carries the wave past faster
     wavenumber: Float[np.ndarray, " wave"]
-    phase: Float[np.ndarray, " wave"]
-    direction: Float[np.ndarray, "wave 2"]
-    depth: float
+    phase: Float[np.ndarray, " wave"]  # at the origin at time 0 [rad]
+    direction: Float[np.ndarray, "wave 2"]  # unit vector that each travels along, (east, north) [-]
+    depth: float  # of the water [m]
 
     @property
     def intrinsic_frequency(self) -> Float[np.ndarray, " wave"]:

@@ -18,15 +18,11 @@ class WaveDraw:
     """All that chance decides about spread waves, for whatever sea they make up.
 
     A sea that changes slowly keeps its draw, so that its waves stay the same ones.
-
-    ``frequency``: over the peak's, one in each bin [-].
-    ``phase``: at the origin at time 0 [rad].
-    ``turned``: clockwise from the sea's direction [rad].
     """
 
-    frequency: Float[np.ndarray, " wave"]
-    phase: Float[np.ndarray, " wave"]
-    turned: Float[np.ndarray, " wave"]
+    frequency: Float[np.ndarray, " wave"]  # over the peak's, one in each bin [-]
+    phase: Float[np.ndarray, " wave"]  # at the origin at time 0 [rad]
+    turned: Float[np.ndarray, " wave"]  # clockwise from the sea's direction [rad]
 
     @classmethod
     def sample(cls, rng: np.random.Generator, *, components: int, spreading: float) -> Self:

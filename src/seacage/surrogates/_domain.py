@@ -16,10 +16,9 @@ class Domain:
     """Range of each feature in the training.
 
     A box: it knows nothing of gaps inside it, and of a current its speed limits the corners.
-
-    ``lower``, ``upper``: smallest and largest value of each feature.
     """
 
+    # Smallest and largest value of each feature
     lower: Float[np.ndarray, " feature"]
     upper: Float[np.ndarray, " feature"]
 

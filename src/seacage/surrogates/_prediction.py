@@ -109,7 +109,7 @@ def check_outputs(
     # The axes expected, e.g. ``"(rows, nodes, 3)"``; only their number and a last 3 count
     shape: str,
     least: int = 2,  # rows that are needed
-) -> Float[np.ndarray, "row *rest"]:
+) -> RowRest:
     """Outputs as finite numbers, one entry per row of inputs.
 
     Raises InputError: of another shape, too few rows, or with a number that is not finite.
@@ -137,7 +137,7 @@ def check_shapes(
     return x, check_outputs(node_position, what=what, rows=len(x), shape="(rows, nodes, 3)")
 
 
-def _refuse_missing(values: Float[np.ndarray, "row *rest"], *, name: str, what: str) -> None:
+def _refuse_missing(values: RowRest, *, name: str, what: str) -> None:
     finite = np.isfinite(values)
     if not finite.all():
         row = int(np.argwhere(~finite)[0, 0])

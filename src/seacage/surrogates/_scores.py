@@ -112,9 +112,8 @@ def block_bootstrap(
     block: int,
     seed: int,
     draws: int = 2000,
-    level: float = 0.95,
 ) -> tuple[float, float, float]:
-    """Mean of a paired difference in time order, and the interval it is known to.
+    """Mean of a paired difference in time order, and the 95 % interval it is known to.
 
     Neighbours in time are nearly the same sample, so whole blocks are drawn, round the end of
     the series to its start. The interval is between percentiles of the means.
@@ -129,8 +128,6 @@ def block_bootstrap(
         Of the draws.
     draws
         How many series are drawn.
-    level
-        Share of the drawn means inside the interval.
 
     Returns
     -------
@@ -140,7 +137,6 @@ def block_bootstrap(
     Source: Politis & Romano (1992), circular block resampling.
     """
     _error(difference, np.zeros_like(difference))
-    ends = interval_ends(level)
     ticks = len(difference)
     if not 1 <= block <= ticks:
         raise InputError(
@@ -156,7 +152,7 @@ def block_bootstrap(
     starts = np.random.default_rng(seed).integers(ticks, size=(draws, blocks))
     lengths = np.array([block] * (blocks - 1) + [rest])
     means = np.sum(total[starts + lengths] - total[starts], axis=1) / ticks
-    lower, upper = np.quantile(means, ends)
+    lower, upper = np.quantile(means, interval_ends(0.95))
     return float(np.mean(difference)), float(lower), float(upper)
 
 

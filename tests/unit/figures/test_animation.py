@@ -9,7 +9,7 @@ from PIL import Image
 from seacage.cage import Cage
 from seacage.conventions import InputError
 from seacage.figures import Motion, write_animation
-from seacage.figures._animation import Gif, _patches
+from seacage.figures._animation import _patches, write_gif
 from seacage.ocean import SeaState, sample_waves, surface_elevation
 
 
@@ -146,10 +146,8 @@ def test_another_ending_is_refused(tmp_path, cage, motion):
 
 
 def test_hundredths_are_spread_so_that_the_whole_keeps_time(tmp_path):
-    gif = Gif(colours=["#ffffff", "#000000"], seconds=0.125)
-    for frame in range(8):
-        gif.add(np.full((4, 4, 3), 255 * (frame % 2), dtype=np.uint8))
-    gif.write(tmp_path / "a.gif")
+    pictures = [np.full((4, 4, 3), 255 * (frame % 2), dtype=np.uint8) for frame in range(8)]
+    write_gif(tmp_path / "a.gif", pictures, colours=["#ffffff", "#000000"], seconds=0.125)
     with Image.open(tmp_path / "a.gif") as read:
         played = []
         for frame in range(read.n_frames):
@@ -159,6 +157,6 @@ def test_hundredths_are_spread_so_that_the_whole_keeps_time(tmp_path):
     assert sum(played) == 1000
 
 
-def test_pictures_faster_than_browsers_show_are_refused():
+def test_pictures_faster_than_browsers_show_are_refused(tmp_path):
     with pytest.raises(InputError, match="fewer pictures a second"):
-        Gif(colours=["#ffffff"], seconds=0.01)
+        write_gif(tmp_path / "a.gif", [], colours=["#ffffff"], seconds=0.01)

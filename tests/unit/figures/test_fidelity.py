@@ -5,7 +5,6 @@ import pytest
 
 from seacage.conventions import Origin
 from seacage.figures import (
-    Panel,
     fouling_figure,
     gain_figure,
     left_figure,
@@ -13,7 +12,7 @@ from seacage.figures import (
     svg_text,
 )
 
-PANELS = [Panel(sensor=f"depth-{number}", quantity="Rise", unit="m") for number in range(1, 6)]
+TITLES = [f"depth-{number}: rise [m]" for number in range(1, 6)]
 ORIGIN = Origin.VIRTUAL_FIELD
 
 
@@ -25,13 +24,13 @@ def words_of(figure) -> str:
 def test_every_sensor_has_a_panel_and_a_direction_without_current_no_bar():
     truth = np.ones((5, 8))
     truth[:, 3] = np.nan
-    figure = sector_figure(PANELS, tuple("ABCDEFGH"), truth, 0.5 * truth, origin=ORIGIN)
+    figure = sector_figure(TITLES, tuple("ABCDEFGH"), truth, 0.5 * truth, origin=ORIGIN)
     shown = [axes for axes in figure.axes if axes.get_visible()]
     assert len(shown) == 5
     heights = [bar.get_height() for bar in shown[0].patches]
     assert np.isnan(heights[3])
     assert "virtual field" in words_of(figure)
-    again = sector_figure(PANELS, tuple("ABCDEFGH"), truth, 0.5 * truth, origin=ORIGIN)
+    again = sector_figure(TITLES, tuple("ABCDEFGH"), truth, 0.5 * truth, origin=ORIGIN)
     assert svg_text(figure) == svg_text(again)
 
 
@@ -53,7 +52,7 @@ def test_zero_is_in_the_middle_of_the_null_case():
 def test_each_current_has_its_line_and_the_record_its_dots():
     growth, speed = np.array([0.0, 0.5, 1.0]), np.array([0.3, 0.6])
     figure = fouling_figure(
-        PANELS,
+        TITLES,
         growth,
         speed,
         np.ones((3, 2, 5)),

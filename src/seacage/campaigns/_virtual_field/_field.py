@@ -35,16 +35,11 @@ FieldMethod = Literal["simulate", "settle"]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class VirtualField:
-    """Readings of the virtual sensors, and the truth behind them.
+    """Readings of the virtual sensors, and the truth behind them."""
 
-    ``record``: with noise, drift, gaps and outages: all that training may see.
-    ``truth``: the same sensors without error and outages, to score against.
-    ``means``: what no sensor sees; None where the cage was settled.
-    """
-
-    record: FieldRecord
-    truth: FieldRecord
-    means: TrueMeans | None = None
+    record: FieldRecord  # with noise, drift, gaps and outages: all that training may see
+    truth: FieldRecord  # the same sensors without error and outages, to score against
+    means: TrueMeans | None = None  # what no sensor sees; None where the cage was settled
 
     def write(self, folder: Path | str) -> None:
         """Write the record, and in its folder ``truth`` the truth.

@@ -42,9 +42,11 @@ class Responses:
         Cubic in speed and direction, quadratic in growth. Speeds above the grid count as its
         largest. Nothing falls below zero: no line pushes, no sensor leaves the water.
         """
+        from scipy.interpolate import BarycentricInterpolator
+
         speed = np.minimum(np.linalg.norm(velocity, axis=1), self.speed[-1])
         direction = np.arctan2(velocity[:, 0], velocity[:, 1]) % (2.0 * np.pi)
-        weights = _lagrange(self.growth, growth)
+        weights = BarycentricInterpolator(self.growth, np.eye(len(self.growth)))(growth).T
         answers = np.zeros((len(speed), len(self.sensor_names)))
         for weight, level in zip(weights, self.value, strict=True):
             for sensor in range(len(self.sensor_names)):
@@ -107,12 +109,15 @@ def true_responses(
         answers.append(_readings(cage, read_campaign(out)))
         before += len(plan)
     *moving, settled = answers
+    # cases in the order of the grid's plan; still water looks the same in all directions
+    by_speed = np.stack(moving).reshape(len(_GROWTHS), len(_SPEEDS), len(_DIRECTIONS), -1)
+    still_water = np.broadcast_to(settled[0], by_speed[:, :1].shape)
     responses = Responses(
         sensor_names=cage.sensor_names,
         speed=np.array([0.0, *_SPEEDS]),
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),
-        value=np.stack([_on_grid(settled[0], readings) for readings in moving]),
+        value=np.concatenate([still_water, by_speed], axis=1),
     )
     velocity = np.array([sea.current_velocity for sea in between.seas])
     interpolated = responses.at(velocity, np.full(len(between), _HELD_OUT_GROWTH))
@@ -134,20 +139,3 @@ def _readings(cage: Cage, campaign: CampaignRecord) -> CaseSensor:
     bridles = [shackle.bridle for shackle in cage.shackles]
     depth = -campaign.node_position[:, nodes, 2]
     return np.hstack([depth, campaign.bridle_tension[:, bridles] / 1e3])
-
-
-def _on_grid(
-    still: Float[np.ndarray, " sensor"], moving: CaseSensor
-) -> Float[np.ndarray, "speed direction sensor"]:
-    """Cases in the order of the grid's plan; still water looks the same in all directions."""
-    by_speed = moving.reshape(len(_SPEEDS), len(_DIRECTIONS), len(still))
-    return np.concatenate([np.broadcast_to(still, (1, *by_speed.shape[1:])), by_speed])
-
-
-def _lagrange(grid: Float[np.ndarray, " growth"], at: PerT) -> Float[np.ndarray, "growth t"]:
-    """Weights of the polynomial through all grid values."""
-    weights = np.ones((len(grid), len(at)))
-    for i, own in enumerate(grid):
-        for other in np.delete(grid, i):
-            weights[i] *= (at - other) / (own - other)
-    return weights

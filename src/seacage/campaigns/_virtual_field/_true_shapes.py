@@ -26,14 +26,10 @@ _GROWTH_STEP = 0.25
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrueShapes:
-    """Shapes of a virtual field's cage, and the currents that its buoy reported meanwhile.
+    """Shapes of a virtual field's cage, and the currents that its buoy reported meanwhile."""
 
-    ``current_velocity``: as reported, (east, north) [m/s].
-    ``node_position``: as they truly were [m].
-    """
-
-    current_velocity: Float[np.ndarray, "case 2"]
-    node_position: Float[np.ndarray, "case node 3"]
+    current_velocity: Float[np.ndarray, "case 2"]  # as reported, (east, north) [m/s]
+    node_position: Float[np.ndarray, "case node 3"]  # as they truly were [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

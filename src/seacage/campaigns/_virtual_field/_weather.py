@@ -36,9 +36,7 @@ class Even:
     first: int = 0  # row of the whole that comes first here
     count: int | None = None  # rows of the whole; None where all are here
 
-    def at(
-        self, second: float | Float[np.ndarray, " t"], *, held: bool = True
-    ) -> Float[np.ndarray, "*t value"]:
+    def at(self, second: float | PerT, *, held: bool = True) -> Float[np.ndarray, "*t value"]:
         """Values at a time or some.
 
         Beyond the whole the end values are held, or go on as straight as the last step if not

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 from concurrent.futures import Executor
 from functools import partial
-from typing import TypeVar
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.dynamics._kernel._library import Balancing, Relaxation, Relaxing, kernel
+from seacage.dynamics._kernel._library import Relaxation, Relaxing, State, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
 from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 
@@ -39,9 +38,6 @@ def relax(
     move = partial(kernel().relax, assembly, relaxation=relaxation, rounds=STRETCH)
     for _ in range(STRETCHES):
         advance(flow, state, move, relaxation.tolerance, pool)
-
-
-State = TypeVar("State", Relaxing, Balancing)
 
 
 def advance(

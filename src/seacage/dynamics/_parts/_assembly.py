@@ -102,9 +102,8 @@ class Panels(Rows):
     half_width: Float[np.ndarray, " panel"]  # half the angle a panel spans round the cage [rad]
     depth: Float[np.ndarray, " panel"]  # of the design shape [m]
     area: Float[np.ndarray, " panel"]  # of the netting as cut [m2]
-    outline: Float[
-        np.ndarray, " panel"
-    ]  # that the solidity is of: as designed, folds seen as solidity [m2]
+    # That the solidity is of: as designed, folds seen as solidity [m2]
+    outline: Float[np.ndarray, " panel"]
     twine_spacing: Float[np.ndarray, " panel"]  # half mesh [m]
     diamond: Bool[np.ndarray, " panel"]  # twines run at 45 degrees to the panel's edges
 
@@ -238,10 +237,15 @@ class Assembly:
         weight = _weight(cage, position, panels)
         # the collar bears all weights, and the bridles' pull down to the corners
         carried = -float(np.sum(weight) + np.sum(springs.preload[:, 2]))
+        hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
         mass, water_mass = _masses(cage, position, panels)
         return cls(
             cage_nodes=cage.node_count,
-            scales=_scales(cage, bars),
+            scales=Scales(
+                length=cage.collar.radius,
+                mesh=float(np.mean(bars.length[: len(cage.edges)])),
+                force=max(float(hung) / cage.spokes, 1.0),
+            ),
             collar=cage.ring_nodes(0),
             position=position,
             weight=weight,
@@ -288,15 +292,6 @@ class Assembly:
         stiffness[self.bridles] /= softness
         length[self.bridles] = taut / (1.0 + tension / stiffness[self.bridles]) + np.array(offset)
         return replace(self, bars=replace(bars, stiffness=stiffness, length=length))
-
-
-def _scales(cage: Cage, bars: Bars) -> Scales:
-    hung = cage.sinker_tube.weight * 2.0 * np.pi * cage.collar.radius + cage.tip.weight
-    return Scales(
-        length=cage.collar.radius,
-        mesh=float(np.mean(bars.length[: len(cage.edges)])),
-        force=max(float(hung) / cage.spokes, 1.0),
-    )
 
 
 def _bars(cage: Cage, position: Node3) -> tuple[Bars, IntPerBridle]:
@@ -428,9 +423,8 @@ def _weight(cage: Cage, position: Node3, panels: Panels) -> PerNode:
     np.add.at(weight, panels.corners, -submerged * panels.area[:, None] * panels.share)
     tube = cage.sinker_tube.weight * _arc(cage, cage.tube_ring) * tube_kept(cage)
     weight[cage.ring_nodes(cage.tube_ring)] -= tube
-    weight[cage.ring_nodes(0)] -= (
-        cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
-    )
+    pipes = cage.collar.pipes * cage.collar.pipe_mass * GRAVITY * _arc(cage, 0)
+    weight[cage.ring_nodes(0)] -= pipes
     weight[cage.bottom_node] -= cage.tip.weight
     return weight
 

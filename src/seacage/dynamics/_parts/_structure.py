@@ -391,8 +391,7 @@ def _check_floats(structure: Structure, members: list[_Member]) -> None:
         lift += member.section.displaced_mass * length * GRAVITY
         weight += member.section.mass * length * GRAVITY
     for index, net in enumerate(structure.net):
-        twine, (row, chord) = structure.twine_of(net), structure.design_net(index)
-        area = structure.spokes * row * float(np.sum(chord[:-1] + chord[1:])) / 2.0
+        twine, area = structure.twine_of(net), float(_area_of_netting(structure, index).sum())
         weight += twine.density * twine.volume * area * GRAVITY
         lift += WATER_DENSITY * twine.volume * area * GRAVITY
     lift += sum(WATER_DENSITY * point.displaced * GRAVITY for point in structure.point)

@@ -18,7 +18,6 @@ from seacage.dynamics._parts._assembly import (
     Ground,
     Panels,
     Slender,
-    Springs,
     direction,
 )
 from seacage.dynamics._physics._loads import (
@@ -123,7 +122,8 @@ def moving_force(
     force += moving_cylinder_force(assembly.cylinders, water, position, velocity)
     force += float_force(assembly.floats, position, water.elevation)
     force += spring_force(assembly.springs, assembly.position, position)
-    force += _spring_damping(assembly.springs, velocity)
+    springs = assembly.springs
+    force[:, springs.nodes] -= springs.damping * velocity[:, springs.nodes]
     force += _ground_force(assembly.ground, assembly.mass, position, velocity)
     force += water_push(assembly, water.acceleration)
     force[..., 2] += assembly.weight
@@ -259,12 +259,6 @@ def moving_cylinder_force(
     load += cylinders.skin_width[:, None] * np.abs(slide) * slide * tangent
     load *= DYNAMIC * length[..., None]
     return _gather(position, ends, np.stack([load, load], axis=2) / 2.0)
-
-
-def _spring_damping(springs: Springs, velocity: Nodal) -> Nodal:
-    force = np.zeros_like(velocity)
-    force[:, springs.nodes] = -springs.damping * velocity[:, springs.nodes]
-    return force
 
 
 def _ground_force(ground: Ground, mass: PerNode, position: Nodal, velocity: Nodal) -> Nodal:

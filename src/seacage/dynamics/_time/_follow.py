@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, Progress, count_times
@@ -14,6 +14,7 @@ from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._detailed import Damage
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
 from seacage.dynamics._time._segments import AbstractWeather, Build, Course, SegmentBatch
+from seacage.dynamics._time._simulation import nodes_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -97,8 +98,8 @@ def follow(
     tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
     build = Build(cage=cage, law=law, tuning=tuning, stiffening=stiffening, refined=refined)
     segments = SegmentBatch(build, weathers, np.array(starts, dtype=np.float64), course, damaged)
-    march, kept = segments.march, _nodes(cage, watched)
-    shaped = _nodes(cage, range(cage.node_count) if shape_nodes is None else shape_nodes)
+    march, kept = segments.march, nodes_of(cage, watched, "follow: watched")
+    shaped = nodes_of(cage, shape_nodes, "follow: shape_nodes")
     place = np.empty((len(starts), course.samples, len(kept), 3))
     tension = np.empty((len(starts), course.samples, cage.bridle_count))
     shape: list[Float[np.ndarray, "stretch node 3"]] = []
@@ -125,16 +126,6 @@ def follow(
         shape=np.stack(shape, axis=1),
         lost_at=segments.starts - course.spin_up * course.every + march.lost_at,
     )
-
-
-def _nodes(cage: Cage, numbers: Sequence[int]) -> Int[np.ndarray, " kept"]:
-    nodes = np.array(numbers, dtype=np.int64)
-    if np.any((nodes < 0) | (nodes >= cage.node_count)):
-        raise InputError(
-            f"follow: a node of {numbers} is none of cage {cage.name}, whose nodes are 0 … "
-            f"{cage.node_count - 1}."
-        )
-    return nodes
 
 
 def _check(weathers: Sequence[AbstractWeather], starts: Sequence[float]) -> None:

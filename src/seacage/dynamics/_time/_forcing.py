@@ -8,9 +8,6 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._screens import MovingLaw
-from seacage.dynamics._physics._wake import wake_share
 from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
 
 # Components of the waves of a case at most: the kernel keeps their phases on a thread's stack
@@ -117,16 +114,3 @@ def ocean_of(
     current = surface[:, None] if profile is None else profile.velocity(surface)
     level_z = np.zeros(1) if profile is None else -np.array(profile.depth)
     return Ocean(waves=waves, current=current, level_z=level_z, depth=depth)
-
-
-def wakes(
-    assembly: Assembly, law: MovingLaw, ocean: Ocean, *, wake: bool
-) -> Float[np.ndarray, "case panel"]:
-    """By the current at each panel's depth in the design shape."""
-    depth = assembly.panels.depth
-    if not wake:
-        return np.ones((len(ocean.current), len(depth)))
-    at_panels = np.array(
-        [[np.interp(depth, -ocean.level_z, axis) for axis in case.T] for case in ocean.current]
-    )
-    return wake_share(assembly, law, np.moveaxis(at_panels, 1, -1))

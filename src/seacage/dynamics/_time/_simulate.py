@@ -26,7 +26,7 @@ from seacage.dynamics._physics._screens import (
 from seacage.dynamics._time._forcing import beyond_morison, draw_waves, morison_waves, ocean_of
 from seacage.dynamics._time._history import History
 from seacage.dynamics._time._reduction import histories, stack
-from seacage.dynamics._time._simulation import Simulation
+from seacage.dynamics._time._simulation import Simulation, nodes_of
 from seacage.ocean import CurrentProfile, SeaState, Waves
 
 HOLD = 4  # time steps through which the water's load is held
@@ -160,7 +160,7 @@ def simulate(
         collar_drag=collar_drag,
         parted=tuple(parted),
         steps=_steps(duration, ramp, spin_up, time_step, sample_every, pieces),
-        nodes=_series_nodes(cage, series_nodes),
+        nodes=nodes_of(cage, series_nodes, "simulate: series_nodes"),
         series=sample_every is not None,
         quantile_levels=_levels(quantile_levels),
         second_moment=second_moment,
@@ -316,16 +316,3 @@ def _levels(levels: Sequence[float]) -> Float[np.ndarray, " quantile"]:
             f"simulate: quantile level {wrong[0]:g} is outside [0, 1]. Give shares, not per cent."
         )
     return np.array(levels, dtype=np.float64)
-
-
-def _series_nodes(
-    cage: Cage | Structure, series_nodes: Sequence[int] | None
-) -> Int[np.ndarray, " kept"]:
-    every = range(cage.node_count)
-    nodes = np.array(every if series_nodes is None else series_nodes, dtype=np.int64)
-    if np.any((nodes < 0) | (nodes >= cage.node_count)):
-        raise InputError(
-            f"simulate: series_nodes = {nodes.tolist()} has a node that the net has not. "
-            f"Give nodes from 0 … {cage.node_count - 1}."
-        )
-    return nodes

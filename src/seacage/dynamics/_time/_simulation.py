@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Structure
-from seacage.conventions import Result
+from seacage.conventions import InputError, Result
 from seacage.dynamics._equilibrium._search import equilibria
 from seacage.dynamics._kernel._march import Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
@@ -17,9 +17,22 @@ from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
 from seacage.dynamics._physics._motion import NetLaw
 from seacage.dynamics._physics._screens import MovingLaw, Tuning
+from seacage.dynamics._physics._wake import wake_share
 from seacage.dynamics._settle import rest_shape
-from seacage.dynamics._time._forcing import wakes
 from seacage.ocean import SeaState
+
+
+def nodes_of(
+    cage: Cage | Structure, numbers: Sequence[int] | None, what: str
+) -> Int[np.ndarray, " kept"]:
+    """Some nodes of a cage, or all. Raises InputError, as ``what``: one that the net has not."""
+    nodes = np.array(range(cage.node_count) if numbers is None else numbers, dtype=np.int64)
+    if np.any((nodes < 0) | (nodes >= cage.node_count)):
+        raise InputError(
+            f"{what} = {nodes.tolist()} has a node that the net has not. "
+            f"Give nodes from 0 … {cage.node_count - 1}."
+        )
+    return nodes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -54,16 +67,18 @@ class Simulation:
         return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
 
     def net_laws(self, assembly: Assembly, laws: Sequence[MovingLaw], ocean: Ocean) -> list[NetLaw]:
-        """The law of the netting in each case's current, case by case."""
-
-        def of(law: MovingLaw, case: slice) -> NetLaw:
-            one = replace(ocean, waves=ocean.waves[case], current=ocean.current[case])
-            share = wakes(assembly, law, one, wake=self.wake)
+        """The law of the netting in each case's current, at the depths of the design shape."""
+        found, depth = list[NetLaw](), assembly.panels.depth
+        for law, current in zip(laws, ocean.current, strict=True):
+            share = np.ones((1, len(depth)))
+            if self.wake:
+                at_panels = [np.interp(depth, -ocean.level_z, axis) for axis in current.T]
+                share = wake_share(assembly, law, np.stack(at_panels, axis=1)[None])
             if law == "morison":
-                return NetLaw(name=law, wake=share, twine_drag=self.twine_drag)
-            return NetLaw(name=law, wake=share, tuning=self.tuning)
-
-        return [of(law, slice(case, case + 1)) for case, law in enumerate(laws)]
+                found.append(NetLaw(name=law, wake=share, twine_drag=self.twine_drag))
+            else:
+                found.append(NetLaw(name=law, wake=share, tuning=self.tuning))
+        return found
 
     @property
     def rest(self) -> Float[np.ndarray, "node 3"]:

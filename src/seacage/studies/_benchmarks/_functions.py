@@ -3,6 +3,8 @@
 All take one row of inputs per case, in the units of the source, and answer with (row,).
 """
 
+from functools import partial
+
 import numpy as np
 from jaxtyping import Float
 
@@ -76,29 +78,28 @@ def park_low(x: Rows) -> Answers:
     return (1.0 + 0.1 * np.sin(one)) * park_high(x) - 2.0 * one + two**2 + three**2 + 0.5
 
 
-def borehole_high(x: Rows) -> Answers:
+def _borehole(x: Rows, *, head: float, offset: float) -> Answers:
     """Flow of water through a borehole [m3/a]; Morris, Mitchell & Ylvisaker (1993)."""
-    return _borehole(x, head=2.0 * np.pi, offset=1.0)
+    radius, influence, upper, upper_head, lower, lower_head, length, conductivity = x.T
+    reach = np.log(influence / radius)
+    leak = 2.0 * length * upper / (reach * radius**2 * conductivity)
+    return head * upper * (upper_head - lower_head) / (reach * (offset + leak + upper / lower))
 
 
-def borehole_low(x: Rows) -> Answers:
-    """The same with two constants changed; Xiong, Qian & Wu (2013)."""
-    return _borehole(x, head=5.0, offset=1.5)
+borehole_high = partial(_borehole, head=2.0 * np.pi, offset=1.0)
+# Two constants changed; Xiong, Qian & Wu (2013)
+borehole_low = partial(_borehole, head=5.0, offset=1.5)
 
 
-def hartmann_high(x: Rows) -> Answers:
+def _hartmann(x: Rows, *, steps: int) -> Answers:
     """Hartmann's function with four pits, on the unit cube."""
-    return _hartmann(x, steps=0)
+    away = (x[:, None, :] - _HARTMANN_CENTRE) ** 2
+    pits = np.exp(-np.sum(_HARTMANN_WIDTH * away, axis=2))
+    return -pits @ (_HARTMANN_DEPTH + steps * _HARTMANN_STEP)
 
 
-def hartmann_middle(x: Rows) -> Answers:
-    """Pits of other depths; Cutajar et al. (2019)."""
-    return _hartmann(x, steps=1)
-
-
-def hartmann_low(x: Rows) -> Answers:
-    """Pits of depths yet further off."""
-    return _hartmann(x, steps=2)
+# Below the highest fidelity pits of other depths; Cutajar et al. (2019)
+hartmann_high, hartmann_middle, hartmann_low = (partial(_hartmann, steps=n) for n in range(3))
 
 
 def cage_low(x: Rows) -> Answers:
@@ -117,19 +118,6 @@ def cage_high(x: Rows) -> Answers:
     taut = 3.0 + 1.3 * drag * (0.4 + 0.6 * towards)
     wake = 0.35 * np.exp(-(((x[:, 0] - 0.1) ** 2 + (x[:, 1] - 0.7) ** 2) / 0.12))
     return 2.0 * np.logaddexp(0.0, 0.5 * taut) * (1.0 - wake)
-
-
-def _borehole(x: Rows, *, head: float, offset: float) -> Answers:
-    radius, influence, upper, upper_head, lower, lower_head, length, conductivity = x.T
-    reach = np.log(influence / radius)
-    leak = 2.0 * length * upper / (reach * radius**2 * conductivity)
-    return head * upper * (upper_head - lower_head) / (reach * (offset + leak + upper / lower))
-
-
-def _hartmann(x: Rows, *, steps: int) -> Answers:
-    away = (x[:, None, :] - _HARTMANN_CENTRE) ** 2
-    pits = np.exp(-np.sum(_HARTMANN_WIDTH * away, axis=2))
-    return -pits @ (_HARTMANN_DEPTH + steps * _HARTMANN_STEP)
 
 
 def _drag(x: Rows, *, yields_at: float) -> tuple[Answers, Answers]:

@@ -12,6 +12,8 @@ from typing import Any
 from seacage.conventions import InputError, read_packaged_table
 from seacage.surrogates import AR1, NARGP, GaussianProcess, ModelAverage
 
+_FOLDER = Path(__file__).parent
+HARNESS = _FOLDER / "_harness.py"  # the script that fits and times, for any interpreter
 OURS = "nargp"  # the method that the verdicts are about
 EMUKIT, SMT, HIGH_ONLY = "emukit-nargp", "smt-mfk", "high-only"  # those that it is held against
 
@@ -36,21 +38,16 @@ class Method:
 
     def key(self) -> str:
         """A hash of the code that makes its answers."""
-        digest = hashlib.sha256(harness().read_bytes())
+        digest = hashlib.sha256(HARNESS.read_bytes())
         theirs = [self.script.parent / name for name in ("scaling.py", "requirements.lock")]
         for path in (self.script, *(_learners() if self.ours else theirs)):
             digest.update(path.read_bytes())
         return digest.hexdigest()[:10]
 
 
-def harness() -> Path:
-    """The script that fits and times, for any interpreter."""
-    return _own("_harness.py")
-
-
 def own_methods() -> tuple[Method, ...]:
     """Ours and the baselines, run by the interpreter that runs this."""
-    python, script = Path(sys.executable), _own("_ours.py")
+    python, script = Path(sys.executable), _FOLDER / "_ours.py"
     own = _methods_of("own")
     return tuple(Method(maker="seacage", python=python, script=script, **one) for one in own)
 
@@ -98,7 +95,3 @@ def _source(module: str) -> Path:
     """File of a module of seacage: that of a package is its door."""
     path = Path(str(resources.files("seacage"))).joinpath(*module.split(".")[1:])
     return path / "__init__.py" if path.is_dir() else path.with_suffix(".py")
-
-
-def _own(name: str) -> Path:
-    return Path(str(resources.files("seacage.studies._benchmarks") / name))

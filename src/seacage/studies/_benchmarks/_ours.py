@@ -10,43 +10,24 @@ Levels = Sequence[tuple[np.ndarray, np.ndarray]]
 Predict = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def nargp(levels: Levels, *, seed: int, **_: object) -> Predict:
-    """NARGP as it comes."""
-    return _predict(NARGP().fit(levels, seed=seed))
+def _method(learn: Callable[[Levels, int], Predicts]) -> Callable[..., Predict]:
+    def fit(levels: Levels, *, seed: int, **_: object) -> Predict:
+        fitted = learn(levels, seed)
 
+        def predict(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            answer = fitted.predict(x)
+            return answer.mean, answer.std
 
-def published(levels: Levels, *, seed: int, **_: object) -> Predict:
-    """NARGP with the published kernel, without the linear term."""
-    return _predict(NARGP(linear=False).fit(levels, seed=seed))
+        return predict
 
-
-def ar1(levels: Levels, *, seed: int, **_: object) -> Predict:
-    """Each level a constant times the one below, plus a Gaussian process."""
-    return _predict(AR1().fit(levels, seed=seed))
-
-
-def average(levels: Levels, *, seed: int, **_: object) -> Predict:
-    """NARGP with both kernels, AR1 and the level alone, averaged."""
-    return _predict(ModelAverage().fit(levels, seed=seed))
-
-
-def high_only(levels: Levels, *, seed: int, **_: object) -> Predict:
-    """A Gaussian process of the highest fidelity alone."""
-    return _predict(GaussianProcess().fit(*levels[-1], seed=seed))
+    return fit
 
 
 METHODS = {
-    "nargp": nargp,
-    "nargp-published": published,
-    "ar1": ar1,
-    "average": average,
-    "high-only": high_only,
+    "nargp": _method(lambda levels, seed: NARGP().fit(levels, seed=seed)),
+    # the published kernel, without the linear term
+    "nargp-published": _method(lambda levels, seed: NARGP(linear=False).fit(levels, seed=seed)),
+    "ar1": _method(lambda levels, seed: AR1().fit(levels, seed=seed)),
+    "average": _method(lambda levels, seed: ModelAverage().fit(levels, seed=seed)),
+    "high-only": _method(lambda levels, seed: GaussianProcess().fit(*levels[-1], seed=seed)),
 }
-
-
-def _predict(fitted: Predicts) -> Predict:
-    def predict(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        answer = fitted.predict(x)
-        return answer.mean, answer.std
-
-    return predict

@@ -9,19 +9,25 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from jaxtyping import Float
 
-from seacage.studies._benchmarks._methods import Method, harness
+from seacage.studies._benchmarks._methods import HARNESS, Method
 from seacage.studies._benchmarks._problems import Problem, Sample
+from seacage.surrogates import coverage, crps, mnll, rmse
 
 # So that the processor's time is what a single core would take
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+# Share of the truth's standard deviation that a predicted one counts as at least. A likelihood does
+# not exist at zero, which some peers answer at their training points.
+NARROWEST = 1e-6
 TIMES = ("fit_s", "predict_s", "tick_s")  # as named in answers and scores
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunScore:
-    """Scores of one run against the truth without noise, in its unit where nothing else is said."""
+    """Scores of one method's answer to one problem and seed, or why there is none.
+
+    Against the truth without noise, in its unit where nothing else is said.
+    """
 
     # Names, and the seed of the problem's sample
     problem: str
@@ -36,16 +42,6 @@ class RunScore:
     predict_s: float = np.nan
     tick_s: float = np.nan
     error: str | None = None  # message of the method that failed; then all scores are NaN
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Run:
-    """One method's answer to one problem and seed, or why there is none."""
-
-    score: RunScore  # of which only names, times and error are known yet
-    # At the test points; None after an error
-    mean: Float[np.ndarray, " row"] | None = None
-    std: Float[np.ndarray, " row"] | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,8 +62,8 @@ class Runs:
         seeds: Sequence[int],
         *,
         on_done: Callable[[int], None],  # called with the number of seeds that are done
-    ) -> list[Run]:
-        """The method's answers for some seeds; those that are there are not made again."""
+    ) -> list[RunScore]:
+        """Score the method's answers for some seeds; those that are there are not made again."""
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {seed: self._job(problem, seed) for seed in seeds}
@@ -82,7 +78,7 @@ class Runs:
             for job in missing:
                 if not there(job):
                     _sign(out, job).write_text(json.dumps({"error": error}), encoding="utf-8")
-        return [_read(problem, method, seed, out, job) for seed, job in jobs.items()]
+        return [_score(problem, method, seed, out, job) for seed, job in jobs.items()]
 
     def complete(self, problem: Problem, method: Method, seeds: Sequence[int]) -> bool:
         """Whether all answers are there already."""
@@ -123,7 +119,7 @@ def _job_inputs(sample: Sample, *, noisy: bool, seed: int) -> dict[str, np.ndarr
 
 def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], None]) -> str:
     """Let the method answer, and return the last line of its errors if it failed."""
-    command = [method.python, harness(), method.script, method.name, out, *jobs]
+    command = [method.python, HARNESS, method.script, method.name, out, *jobs]
     complaints = out / "stderr.txt"
     with (
         complaints.open("w", encoding="utf-8") as error,
@@ -148,18 +144,25 @@ def _run(method: Method, out: Path, jobs: Sequence[Path], on_done: Callable[[], 
     return f"the process ended with code {process.returncode}: {last}"
 
 
-def _read(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> Run:
+def _score(problem: Problem, method: Method, seed: int, out: Path, job: Path) -> RunScore:
     result: Mapping[str, float | str] = json.loads(_sign(out, job).read_text("utf-8"))
     score = RunScore(problem=problem.name, method=method.name, seed=seed)
     if "error" in result:
-        return Run(score=replace(score, error=str(result["error"])[:300]))
+        return replace(score, error=str(result["error"])[:300])
     with np.load(out / job.name) as answer:
         mean, std = answer["mean"], answer["std"]
     if mean.shape != (problem.tests,) or not (np.isfinite(mean) & np.isfinite(std)).all():
-        unusable = "the answer is not a finite number for each test point"
-        return Run(score=replace(score, error=unusable))
-    times = {name: float(result[name]) for name in TIMES}
-    return Run(score=replace(score, **times), mean=mean, std=std)
+        return replace(score, error="the answer is not a finite number for each test point")
+    truth = problem.sample(seed).y_test
+    std = np.maximum(std, NARROWEST * float(np.std(truth)))
+    return replace(
+        score,
+        rmse=rmse(truth, mean),
+        mnll=mnll(truth, mean, std),
+        crps=crps(truth, mean, std),
+        coverage=coverage(truth, mean, std),
+        **{name: float(result[name]) for name in TIMES},
+    )
 
 
 def _sign(out: Path, job: Path) -> Path:

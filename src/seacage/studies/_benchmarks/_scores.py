@@ -1,17 +1,11 @@
 """How good the answers to benchmark problems are, by seed and over seeds."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float
 
-from seacage.studies._benchmarks._runs import TIMES, Run, RunScore
-from seacage.surrogates import coverage, crps, mnll, rmse
-
-# Share of the truth's standard deviation that a predicted one counts as at least. A likelihood does
-# not exist at zero, which some peers answer at their training points.
-NARROWEST = 1e-6
+from seacage.studies._benchmarks._runs import TIMES, RunScore
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,20 +30,6 @@ class Summary:
     tick_s: float
     rmses: tuple[float, ...]  # by seed, in their order; NaN where it failed
     error: str | None
-
-
-def score_run(run: Run, truth: Float[np.ndarray, " row"]) -> RunScore:
-    """Score a run."""
-    if run.mean is None or run.std is None:
-        return run.score
-    std = np.maximum(run.std, NARROWEST * float(np.std(truth)))
-    return replace(
-        run.score,
-        rmse=rmse(truth, run.mean),
-        mnll=mnll(truth, run.mean, std),
-        crps=crps(truth, run.mean, std),
-        coverage=coverage(truth, run.mean, std),
-    )
 
 
 def summary(scores: Sequence[RunScore]) -> Summary:

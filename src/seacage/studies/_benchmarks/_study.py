@@ -9,7 +9,7 @@ from seacage.studies._benchmarks._methods import OURS, Method, own_methods, peer
 from seacage.studies._benchmarks._problems import CAGE_SIZE, PROBLEMS, Problem
 from seacage.studies._benchmarks._report import page_values
 from seacage.studies._benchmarks._runs import Runs, RunScore
-from seacage.studies._benchmarks._scores import Summary, score_run, summary
+from seacage.studies._benchmarks._scores import Summary, summary
 from seacage.studies._benchmarks._verdicts import verdicts
 from seacage.studies._page import write_report
 from seacage.studies._text import Claim, join_names
@@ -115,18 +115,16 @@ def _split_seeds(seeds: Sequence[int], *, quick: bool) -> tuple[list[int], list[
 def _scores(
     runs: Runs, problem: Problem, methods: Sequence[Method], seeds: Sequence[int], notify: Progress
 ) -> list[RunScore]:
-    truths = {seed: problem.sample(seed).y_test for seed in seeds}
     total = len(methods) * len(seeds)
     found: list[RunScore] = []
     for method in methods:
         before = len(found)
-        made = runs.ensure(
+        found += runs.ensure(
             problem,
             method,
             seeds,
             on_done=lambda done, before=before: notify(problem.title, before + done, total),
         )
-        found += [score_run(run, truths[run.score.seed]) for run in made]
     return found
 
 

@@ -51,6 +51,7 @@ class Gain:
     # Its name, and the unit of its responses
     sensor: str
     unit: str
+    mean_s: float  # length of the means that count as readings [s]
     # How many readings
     teaching: int
     judging: int
@@ -90,7 +91,6 @@ class NullCase:
     null: Gains
     real: Gains
     unjudged: tuple[str, ...]  # sensors with too few readings
-    mean_s: dict[str, float]  # by sensor, the length of the means that count as readings [s]
 
 
 def null_case(
@@ -118,7 +118,6 @@ def null_case(
         null=_together(null, windows, seed),
         real=_together(real, windows, seed),
         unjudged=tuple(trial.sensor for trial in trials if not trial.enough),
-        mean_s={trial.sensor: trial.mean_s for trial in usable},
     )
 
 
@@ -183,6 +182,7 @@ def _score(
     score = Gain(
         sensor=trial.sensor,
         unit=trial.unit,
+        mean_s=trial.mean_s,
         teaching=min(points, int(np.sum(trial.teach))),
         judging=len(gain),
         low_mae=float(low.mean()),

@@ -6,25 +6,26 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures import Panel, fouling_figure, gain_figure, left_figure, sector_figure
+from seacage.figures import fouling_figure, gain_figure, left_figure, sector_figure
 from seacage.studies._fidelity._claims import THOUSANDTH
 from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SECTORS, SensorGap
 from seacage.studies._fidelity._null_case import Gains, NullCase
-from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescalings
+from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
 from seacage.studies._page import embed
 
 ORIGIN = Origin.VIRTUAL_FIELD  # of every truth and every reading here
-_QUANTITIES = {"m": "Rise", "kN": "Tension"}
+_QUANTITIES = {"m": "rise", "kN": "tension"}
 
 
 def page_values(
-    gaps: Sequence[SensorGap], rescalings: Rescalings, null: NullCase, fouling: FoulingGap
+    gaps: Sequence[SensorGap],
+    rescalings: Sequence[Rescaling],
+    null: NullCase,
+    fouling: FoulingGap,
 ) -> dict[str, object]:
     """Figures and names of the page besides the scores."""
-    panels = [
-        Panel(sensor=gap.sensor, quantity=_QUANTITIES[gap.unit], unit=gap.unit) for gap in gaps
-    ]
+    titles = [f"{gap.sensor}: {_QUANTITIES[gap.unit]} [{gap.unit}]" for gap in gaps]
     by_sector = {
         name: np.array([_by_sector(gap, name) for gap in gaps])
         for name in ("truth", "low", "bias", "mae", "windows")
@@ -32,17 +33,17 @@ def page_values(
     names = [*(one.sensor for one in null.null.sensors), "All together"]
     figures = {
         "sectors": sector_figure(
-            panels, SECTORS, by_sector["truth"], by_sector["low"], origin=ORIGIN
+            titles, SECTORS, by_sector["truth"], by_sector["low"], origin=ORIGIN
         ),
         "left": left_figure(
-            [one.sensor for one in rescalings.sensors],
-            np.array([one.left for one in rescalings.sensors]),
+            [one.sensor for one in rescalings],
+            np.array([one.left for one in rescalings]),
             least=LEAST_LEFT,
             origin=ORIGIN,
         ),
         "gains": gain_figure(names, _shares(null.null), _shares(null.real), origin=ORIGIN),
         "fouling": fouling_figure(
-            panels,
+            titles,
             fouling.growth,
             fouling.speed,
             fouling.gap,
@@ -52,7 +53,6 @@ def page_values(
         ),
     }
     return {
-        "emulation_mae": rescalings.emulation_mae,
         "sectors": list(SECTORS),
         "by_sector": by_sector,
         "growths": [f"{growth:g}" for growth in fouling.growth],

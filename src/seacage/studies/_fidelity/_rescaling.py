@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -14,9 +13,6 @@ from seacage.studies._interval import Interval, by_day
 from seacage.studies._stages import Stages, count
 from seacage.surrogates import FittedGaussianProcess, GaussianProcess, current_features
 
-if TYPE_CHECKING:
-    from scipy.interpolate import RectBivariateSpline
-
 LEAST_LEFT = 0.10  # share of the low fidelity's error that no rescaling may remove
 # Factors of the current's speed [-] and turns, clockwise [deg], that are tried first
 _FACTORS = np.arange(0.2, 2.01, 0.1)
@@ -25,9 +21,6 @@ _FINER = 5  # around the best, so many times finer steps are tried
 # Settled currents that the change of an answer is learned from, up to this speed [m/s]
 _CURRENTS = 400
 _FASTEST = 1.8
-# East and north components at which what was learned is tabled, to be asked often [m/s]
-_TABLE = np.linspace(-_FASTEST, _FASTEST, 73)
-
 _REWEIGHINGS = 30
 Columns = Float[np.ndarray, "window sensor"]
 
@@ -53,6 +46,8 @@ class Rescaling:
     left_mae: float
     # What is left less a tenth of what there was: above 0 where more than a tenth is left
     above_least: Interval
+    # Error of the interpolation between settled currents, each left out in turn [m] or [kN]
+    emulation_mae: float
 
     @property
     def left(self) -> float:
@@ -66,22 +61,11 @@ class Rescaling:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Rescalings:
-    """Of all sensors."""
-
-    sensors: tuple[Rescaling, ...]  # one each
-    # Error of the interpolation between settled currents, each left out in turn, by sensor [m] or
-    # [kN]
-    emulation_mae: dict[str, float]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Moving:
     """How the low fidelity's answers move when the current of each window is changed."""
 
     windows: Windows  # with the answers as they are; what waves add to them stays
-    # Of each sensor, in (east, north): smooth, without a seam at any direction
-    settled: "tuple[RectBivariateSpline, ...]"
+    settled: FittedGaussianProcess  # answers of all sensors to currents alone
 
     def answers_at(self, factor: float, turn: float) -> Columns:
         """Answers to faster and turned currents, the turn clockwise [deg]."""
@@ -96,7 +80,7 @@ class Moving:
     def _at_current(self, velocity: Float[np.ndarray, "window 2"]) -> Columns:
         speed = np.linalg.norm(velocity, axis=1, keepdims=True)
         limited = velocity * np.minimum(1.0, _FASTEST / np.maximum(speed, _FASTEST))
-        return np.column_stack([one.ev(*limited.T) for one in self.settled])
+        return self.settled.mean(current_features(limited))
 
 
 def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
@@ -105,7 +89,7 @@ def teaching_days(windows: Windows) -> Bool[np.ndarray, " window"]:
     return index % 2 == 0 if len(days) > 1 else np.arange(len(windows)) < len(windows) // 2
 
 
-def rescalings(windows: Windows, stages: Stages, *, seed: int) -> Rescalings:
+def rescalings(windows: Windows, stages: Stages, *, seed: int) -> tuple[Rescaling, ...]:
     """Fit the best rescaling of each sensor on training days; score it on the others.
 
     The current's speed is multiplied, its direction turned, and the answer multiplied and
@@ -113,21 +97,19 @@ def rescalings(windows: Windows, stages: Stages, *, seed: int) -> Rescalings:
     sensor's noise, so that a rescaling has every advantage. How an answer changes with the current
     comes from settled currents; what waves add stays as simulated.
     """
-    process, errors = _fit_settled(windows.sensors, stages, seed)
-    settled, teach = _tabulate(process), teaching_days(windows)
+    settled, errors = _fit_settled(windows.sensors, stages, seed)
+    teach = teaching_days(windows)
     training, test = (
         Moving(windows=windows.rows(days), settled=settled) for days in (teach, ~teach)
     )
     coarse = list(product(_FACTORS.tolist(), _TURNS.tolist()))
     first = np.stack([training.answers_at(*change) for change in coarse])
-    names = windows.sensors.names
     found: list[Rescaling] = []
-    for column in count(range(len(names)), "rescaling", stages.progress):
+    for column in count(range(len(errors)), "rescaling", stages.progress):
         change = coarse[_least(first[..., column], training.windows.truth[:, column])]
-        found.append(_score(training, test, column, _refine(training, column, change), seed))
-    return Rescalings(
-        sensors=tuple(found), emulation_mae=dict(zip(names, errors.tolist(), strict=True))
-    )
+        change = _refine(training, column, change)
+        found.append(_score(training, test, column, change, errors[column], seed))
+    return tuple(found)
 
 
 def _fit_settled(
@@ -145,17 +127,6 @@ def _fit_settled(
         current_features(velocity), answers, seed=seed
     )
     return settled, np.abs(settled.leave_one_out().mean - answers).mean(axis=0)
-
-
-def _tabulate(process: FittedGaussianProcess) -> "tuple[RectBivariateSpline, ...]":
-    from scipy.interpolate import RectBivariateSpline
-
-    east, north = np.meshgrid(_TABLE, _TABLE, indexing="ij")
-    velocity = np.column_stack([east.ravel(), north.ravel()])
-    answers = process.predict(current_features(velocity)).mean
-    return tuple(
-        RectBivariateSpline(_TABLE, _TABLE, column.reshape(east.shape)) for column in answers.T
-    )
 
 
 def _refine(training: Moving, column: int, change: tuple[float, float]) -> tuple[float, float]:
@@ -199,7 +170,12 @@ def _fit_gain_and_offset(
 
 
 def _score(
-    training: Moving, test: Moving, column: int, change: tuple[float, float], seed: int
+    training: Moving,
+    test: Moving,
+    column: int,
+    change: tuple[float, float],
+    emulation_mae: float,
+    seed: int,
 ) -> Rescaling:
     """Gain and offset from the training days; errors on the others."""
     train, windows = training.windows, test.windows
@@ -221,4 +197,5 @@ def _score(
         low_mae=float(low.mean()),
         left_mae=float(left.mean()),
         above_least=by_day(left - LEAST_LEFT * low, windows.day, seed=seed),
+        emulation_mae=float(emulation_mae),
     )

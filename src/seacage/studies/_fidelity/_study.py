@@ -97,13 +97,13 @@ def fidelity_study(
     scaled = rescalings(survey, stages, seed=seed)
     null = null_case(whole, record, points=_POINTS, seed=seed, progress=report)
     fouling = fouling_gap(survey, hidden, stages, begin=record.buoy.time[0])
-    found = claims(gaps, scaled.sensors, null, fouling)
+    found = claims(gaps, scaled, null, fouling)
     scores = {
         "recipe": _recipe(record, whole, lost=len(chosen) - len(whole)),
         "provenance": _provenance(record, cage, seed),
         "claims": found,
         "sensors": gaps,
-        "rescalings": scaled.sensors,
+        "rescalings": scaled,
         "null_case": null,
         "fouling": fouling,
     }
@@ -114,7 +114,7 @@ def fidelity_study(
         scores=numbers,
         claims=found,
         gaps=gaps,
-        rescalings=scaled.sensors,
+        rescalings=scaled,
         null=null,
         fouling=fouling,
     )

@@ -12,9 +12,14 @@ from seacage.cage import Cage
 from seacage.conventions import InputError, Progress
 from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._gcn._graph import Graph
-from seacage.surrogates._gcn._layers import Kind, first_parameters, parameter_shapes
+from seacage.surrogates._gcn._layers import (
+    Kind,
+    Recipe,
+    first_parameters,
+    parameter_shapes,
+    recipe_of,
+)
 from seacage.surrogates._gcn._network import Network, standard_rest
-from seacage.surrogates._gcn._recipe import Recipe, recipe_of
 from seacage.surrogates._gcn._spread import Spread
 from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._scaling import Scaling

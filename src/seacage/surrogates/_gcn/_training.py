@@ -12,9 +12,9 @@ import optax
 from jaxtyping import Float, Int
 
 from seacage.conventions import Progress
-from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters
-from seacage.surrogates._gcn._recipe import FEWEST_BATCHES, LARGEST_BATCH, Recipe
+from seacage.surrogates._gcn._layers import NETWORKS, Kind, Parameters, Recipe
 
+LARGEST_BATCH, FEWEST_BATCHES = 64, 10  # cases per step of the optimiser, and steps per epoch
 # Share of the averaged weights that a step keeps: an average over about the last fifty steps
 REMEMBERED = 0.98
 ADAM = optax.chain(optax.clip_by_global_norm(1.0), optax.scale_by_adam())

@@ -9,8 +9,6 @@ import numpy as np
 import scipy
 from jaxtyping import Float
 
-from seacage.conventions import InputError
-
 NN = Float[np.ndarray, "n n"]
 RowN = Float[np.ndarray, "row n"]
 PerN = Float[np.ndarray, " n"]
@@ -100,9 +98,6 @@ class Spectrum:
     basis: NN
     value: PerN
     noise: Float[np.ndarray, " output"]  # variance of each output's
-    # Shares of the outputs' variance in the one answer that is a sum of them; None answers with
-    # each output
-    mixture: Float[np.ndarray, " output"] | None = None
 
     @classmethod
     def of(cls, covariance: NN, noise: Float[np.ndarray, " output"]) -> Self:
@@ -113,18 +108,15 @@ class Spectrum:
 
     @property
     def inverse_value(self) -> NOutput:
-        """Eigenvalues of the inverse, for each answer."""
-        inverse_value = 1.0 / (self.value[:, None] + self.noise)
-        return inverse_value if self.mixture is None else inverse_value @ self.mixture[:, None]
+        """Eigenvalues of the inverse, for each output."""
+        return 1.0 / (self.value[:, None] + self.noise)
 
     def solve(self, y: NOutput) -> NOutput:
         """Inverse times outputs."""
-        self._refuse_mixture()
         return self.basis @ ((self.basis.T @ y) * self.inverse_value)
 
     def observations(self, weights: NOutput) -> NOutput:
         """Outputs whose inverse is the weights."""
-        self._refuse_mixture()
         return self.basis @ ((self.basis.T @ weights) / self.inverse_value)
 
     def variance_reduction(self, cross: RowN) -> Float[np.ndarray, "row output"]:
@@ -133,22 +125,7 @@ class Spectrum:
 
     def precision(self) -> NOutput:
         """Diagonal of the inverse."""
-        self._refuse_mixture()
         return self.basis**2 @ self.inverse_value
-
-    def mixed(self, share: Float[np.ndarray, " output"]) -> Self:
-        """For one answer that sums independent outputs of these shares of its variance."""
-        only = np.flatnonzero(share)
-        if len(only) == 1:
-            return replace(self, noise=self.noise[only])
-        return replace(self, mixture=share)
-
-    def _refuse_mixture(self) -> None:
-        if self.mixture is not None:
-            raise InputError(
-                "A sum of outputs of unlike noise can predict, but it was not learned as one "
-                "output. Ask the whole model instead."
-            )
 
 
 def _lower(covariance: NN, diagonal: PerN) -> NN:

@@ -265,18 +265,13 @@ class FittedGaussianProcess:
         outputs = len(self.centre)
         if not 0 <= index < outputs:
             raise InputError(f"output {index} does not exist; this model has {outputs}, from 0.")
-        return self.combined(np.eye(outputs)[index])
-
-    def combined(self, share: Float[np.ndarray, " output"]) -> "FittedGaussianProcess":
-        """The sum of the outputs times their share, as a model that answers (row,)."""
-        members = [member.combined(share, amplitude=self.amplitude) for member in self.members]
         return replace(
             self,
-            members=tuple(members),
-            centre=np.array([self.centre @ share]),
-            amplitude=np.array([np.linalg.norm(self.amplitude * share)]),
+            members=tuple(member.output(index) for member in self.members),
+            centre=self.centre[[index]],
+            amplitude=self.amplitude[[index]],
             single=True,
-            line=self.line @ share[:, None],
+            line=self.line[:, [index]],
         )
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
@@ -536,20 +531,11 @@ def condense(y: Float[np.ndarray, "n output"]) -> Float[np.ndarray, "n some"]:
     return scores / (np.sqrt(np.mean(scores**2)) or 1.0)
 
 
-def check_options(
-    *,
-    kernel: str = "squared-exponential",
-    noise: str = "white",
-    ensemble: str = "auto",
-    restarts: int,
-) -> None:
-    """Refuse options of ``GaussianProcess`` that do not exist."""
-    for name, value, known in (
-        ("kernel", kernel, get_args(KernelName)),
-        ("noise", noise, get_args(NoiseName)),
-        ("ensemble", ensemble, get_args(Ensemble)),
-    ):
-        if value not in known:
+def check_options(*, restarts: int, **options: str) -> None:
+    """Refuse options of ``GaussianProcess`` that do not exist: kernel, noise or ensemble."""
+    names = {"kernel": KernelName, "noise": NoiseName, "ensemble": Ensemble}
+    for name, value in options.items():
+        if value not in (known := get_args(names[name])):
             raise InputError(f"{name} = {value!r} is not known. Choose one of {', '.join(known)}.")
     if restarts < 0:
         raise InputError(f"restarts = {restarts} is negative. Give the number of extra starts.")

@@ -129,10 +129,7 @@ class Posterior(Process):
 
     def noise_at(self, x: RowFeature) -> RowOutput:
         """Variance of the noise of a new measurement; one column stands for all outputs."""
-        variance = self.noise.variance(self.log_noise, x)
-        if isinstance(self.factor, Spectrum) and self.factor.mixture is not None:
-            return variance @ self.factor.mixture[:, None]
-        return variance
+        return self.noise.variance(self.log_noise, x)
 
     def predict(self, x: RowFeature) -> tuple[RowOutput, RowShared]:
         """Mean of each output, and the variance without noise, in one column if all share it."""
@@ -227,17 +224,13 @@ class Posterior(Process):
                 return self._posterior(all_x, noise_factor, factor.solve(all_y), factor)
         return self.condition(all_x, all_y, noise_factor=noise_factor)
 
-    def combined(self, share: PerOutput, *, amplitude: PerOutput) -> "Posterior":
-        """The sum of the outputs times their share; ``amplitude`` as for ``updated``."""
-        weights = self.weights @ share[:, None]
+    def output(self, index: int) -> "Posterior":
+        """One output alone, which shares the factor."""
+        weights = self.weights[:, [index]]
         if not isinstance(self.factor, Spectrum):
             return replace(self, weights=weights)
-        variance = (share * amplitude) ** 2
-        variance /= max(float(variance.sum()), np.finfo(float).tiny)
-        only = np.flatnonzero(share)
-        log_noise = self.log_noise[only] if len(only) == 1 else self.log_noise
-        factor = self.factor.mixed(np.where(share == 0.0, 0.0, variance))
-        return replace(self, weights=weights, factor=factor, log_noise=log_noise)
+        factor = replace(self.factor, noise=self.factor.noise[[index]])
+        return replace(self, weights=weights, factor=factor, log_noise=self.log_noise[[index]])
 
     def _new_noise_factors(self, x: NewFeature, y: NewOutput, amplitude: PerOutput) -> PerNew:
         """Noise factor of new points, each from its prediction by the old ones."""

@@ -19,15 +19,12 @@ class LoadChange:
 
     Both sides of the change are simulated in the same waves, so that what those did by chance
     falls out of it.
-
-    ``mean``: what the mean changes by [N].
-    ``maximum``: what the expected largest of three hours, above the mean, changes by over Hs [N/m].
-    ``state``: other quantities of the state after the change, as they are.
     """
 
-    mean: FittedGaussianProcess
+    mean: FittedGaussianProcess  # of what the mean changes by [N]
+    # Of what the expected largest of three hours, above the mean, changes by over Hs [N/m]
     maximum: FittedGaussianProcess
-    state: FittedGaussianProcess
+    state: FittedGaussianProcess  # of other quantities of the state after the change, as they are
 
     @classmethod
     def fit(

@@ -187,33 +187,20 @@ def draw_images(
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedLoadGP:
-    """Processes of lines' loads in waves.
-
-    Parameters
-    ----------
-    processes
-        By statistic: "mean" [N], and the logarithms of "std", "maximum" (above the mean) and,
-        where any line has a T-N curve, "damage", over Hs.
-    widening
-        By the same names, factor on each line's standard deviation, from cases left out [-].
-    offset
-        Added to a statistic before its logarithm was taken [N].
-    scatter
-        Gumbel scale of the largest value over its mean height above the mean, of each line [-].
-    wears
-        1 for a line with a T-N curve, 0 for one without [-].
-    duration
-        That the statistics of the training are over [s].
-    """
+    """Processes of lines' loads in waves."""
 
     MODEL: ClassVar[str] = "loads"
 
+    # By statistic: "mean" [N], and the logarithms of "std", "maximum" (above the mean) and, where
+    # any line has a T-N curve, "damage", over Hs
     processes: Mapping[str, gp.FittedGaussianProcess]
+    # By the same names, factor on each line's standard deviation, from cases left out [-]
     widening: Mapping[str, Float[np.ndarray, " line"]]
-    offset: Mapping[str, float]
+    offset: Mapping[str, float]  # added to a statistic before its logarithm was taken [N]
+    # Gumbel scale of the largest value over its mean height above the mean, of each line [-]
     scatter: Float[np.ndarray, " line"]
-    wears: Float[np.ndarray, " line"]
-    duration: float
+    wears: Float[np.ndarray, " line"]  # 1 for a line with a T-N curve, 0 for one without [-]
+    duration: float  # that the statistics of the training are over [s]
 
     def predict(
         self,

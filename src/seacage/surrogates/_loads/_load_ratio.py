@@ -25,24 +25,13 @@ Series = Float[np.ndarray, " window"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadRatio:
-    """Logarithm of a ratio, linear in one variable at most.
+    """Logarithm of a ratio, linear in one variable at most."""
 
-    Parameters
-    ----------
-    constant
-        At ``centre`` [-].
-    variable
-        Name of the variable; "" for none.
-    slope
-        Per unit of the variable.
-    centre, lower, upper
-        Of the variable in the training: mean, least and largest. Beyond those the ratio is that
-        of the nearer.
-    """
-
-    constant: float = 0.0
-    variable: str = ""
-    slope: float = 0.0
+    constant: float = 0.0  # at ``centre`` [-]
+    variable: str = ""  # name of the variable; "" for none
+    slope: float = 0.0  # per unit of the variable
+    # Of the variable in the training: mean, least and largest. Beyond those the ratio is that of
+    # the nearer
     centre: float = 0.0
     lower: float = 0.0
     upper: float = 0.0

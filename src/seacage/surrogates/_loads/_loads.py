@@ -20,27 +20,18 @@ NODES, WEIGHTS = np.polynomial.hermite_e.hermegauss(9)
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LoadCases(Rows):
-    """Loads of a campaign's lines, one row per case.
+    """Loads of a campaign's lines, one row per case."""
 
-    Parameters
-    ----------
-    mean, std
-        Of the tension [N].
-    most_probable, expected
-        Most probable and expected largest tension of three hours; NaN where a line had too few
-        peaks, being slack nearly all the time [N].
-    largest
-        Of the case itself, which counts where ``expected`` is NaN [N].
-    damage_equivalent
-        Range of cycles at 1 Hz that wear the line as much; NaN in all cases of a line without a
-        T-N curve [N].
-    """
-
+    # Of the tension [N]
     mean: CaseLine
     std: CaseLine
+    # Most probable and expected largest tension of three hours; NaN where a line had too few
+    # peaks, being slack nearly all the time [N]
     most_probable: CaseLine
     expected: CaseLine
-    largest: CaseLine
+    largest: CaseLine  # of the case itself, which counts where ``expected`` is NaN [N]
+    # Range of cycles at 1 Hz that wear the line as much; NaN in all cases of a line without a T-N
+    # curve [N]
     damage_equivalent: CaseLine
 
     @property
@@ -56,26 +47,15 @@ class LoadPrediction(Rows):
 
     The load is base + size · exp(log_std · n) · (1 + gumbel · (g − 0.577)) − offset, with n
     standard normal and g standard Gumbel.
-
-    Parameters
-    ----------
-    base
-        What the load is above [N].
-    size
-        Median of the rest, the offset included [N].
-    log_std
-        Standard deviation of the rest's logarithm; NaN where no honest interval is known [-].
-    gumbel
-        Scale of the largest value's scatter over the rest; 0 for what is no largest value [-].
-    offset
-        Taken from the sum; no load is below its base [N].
     """
 
-    base: CaseLine
-    size: CaseLine
+    base: CaseLine  # what the load is above [N]
+    size: CaseLine  # median of the rest, the offset included [N]
+    # Standard deviation of the rest's logarithm; NaN where no honest interval is known [-]
     log_std: CaseLine
+    # Scale of the largest value's scatter over the rest; 0 for what is no largest value [-]
     gumbel: CaseLine
-    offset: float
+    offset: float  # taken from the sum; no load is below its base [N]
 
     @property
     def mean(self) -> CaseLine:
@@ -170,28 +150,19 @@ class LoadPrediction(Rows):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Loads(Rows):
-    """Predicted loads of lines, one row per case.
+    """Predicted loads of lines, one row per case."""
 
-    Parameters
-    ----------
-    mean, std
-        Of the tension over the time that was asked for [N].
-    maximum_3h
-        Largest tension of three hours: its mean is the expected one, its interval holds the
-        realised one [N].
-    damage_equivalent
-        Range of cycles at 1 Hz that wear the line as much; NaN for a line without a T-N
-        curve [N].
-    damage_per_year
-        Share of the life that a year of this sea uses up; NaN for a line without an intercept of
-        its curve, outside the training domain and where Tp is not known; None before lines' curves
-        are known [1/a].
-    """
-
+    # Of the tension over the time that was asked for [N]
     mean: Prediction
     std: LoadPrediction
+    # Largest tension of three hours: its mean is the expected one, its interval holds the realised
+    # one [N]
     maximum_3h: LoadPrediction
+    # Range of cycles at 1 Hz that wear the line as much; NaN for a line without a T-N curve [N]
     damage_equivalent: LoadPrediction
+    # Share of the life that a year of this sea uses up; NaN for a line without an intercept of its
+    # curve, outside the training domain and where Tp is not known; None before lines' curves are
+    # known [1/a]
     damage_per_year: CaseLine | None = None
 
     def known(self, rows: Bool[np.ndarray, " case"]) -> Self:

@@ -18,26 +18,15 @@ LEFT_OUT = 1e-2  # share of the logarithms' variance that the modes may leave ou
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class FittedMotionGP:
-    """Processes of nodes' motion in waves: modes of the logarithm of their motion over Hs.
-
-    Parameters
-    ----------
-    process
-        Of the modes' coefficients.
-    centre
-        Mean logarithm of each node's horizontal motions, and then of the vertical ones.
-    mode
-        Shapes of the logarithms.
-    offset
-        Added to a motion before its logarithm was taken [m].
-    """
+    """Processes of nodes' motion in waves: modes of the logarithm of their motion over Hs."""
 
     MODEL: ClassVar[str] = "motion"
 
-    process: FittedGaussianProcess
+    process: FittedGaussianProcess  # of the modes' coefficients
+    # Mean logarithm of each node's horizontal motions, and then of the vertical ones
     centre: Float[np.ndarray, " quantity"]
-    mode: Float[np.ndarray, "mode quantity"]
-    offset: float
+    mode: Float[np.ndarray, "mode quantity"]  # shapes of the logarithms
+    offset: float  # added to a motion before its logarithm was taken [m]
 
     @classmethod
     def fit(

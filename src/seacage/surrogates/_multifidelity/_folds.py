@@ -14,15 +14,12 @@ LEAST_CASES = 2  # that a model is conditioned on
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Folds:
-    """Cases that are held out together, one fold after the other, and those kept meanwhile.
+    """Cases that are held out together, one fold after the other, and those kept meanwhile."""
 
-    ``out``, ``kept``: of each fold; a case may be in neither, as one too near to those held out.
-    ``independent``: how many independent observations all cases are worth.
-    """
-
+    # Of each fold; a case may be in neither, as one too near to those held out
     out: Bool[np.ndarray, "fold case"]
     kept: Bool[np.ndarray, "fold case"]
-    independent: float
+    independent: float  # how many independent observations all cases are worth
 
     @classmethod
     def random(cls, cases: int, *, seed: int) -> Self:

@@ -17,11 +17,14 @@ from seacage.surrogates._multifidelity._kernel import (
     LinkKernel,
     alone,
     autoregressive,
-    bend_of,
     regression,
     straight,
 )
-from seacage.surrogates._multifidelity._quadrature import propagate_moments, propagate_slope
+from seacage.surrogates._multifidelity._quadrature import (
+    ProcessLevel,
+    propagate_moments,
+    propagate_slope,
+)
 from seacage.surrogates._prediction import (
     Moments,
     Prediction,
@@ -32,10 +35,7 @@ from seacage.surrogates._prediction import (
 from seacage.surrogates._scaling import Scaling
 
 NFeature = Float[np.ndarray, "n feature"]
-NewFeature = Float[np.ndarray, "new feature"]
-PerFeature = Float[np.ndarray, " feature"]
 PerN = Float[np.ndarray, " n"]
-PerNew = Float[np.ndarray, " new"]
 PerRow = Float[np.ndarray, " row"]
 RowFeature = Float[np.ndarray, "row feature"]
 ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
@@ -308,7 +308,7 @@ class FittedNARGP:
             below = _central_differences(self.lower, x, step=step)
         return propagate_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
 
-    def updated(self, x: NewFeature, y: PerNew, *, level: int | None = None) -> Self:
+    def updated(self, x: RowFeature, y: PerRow, *, level: int | None = None) -> Self:
         """Conditioned on more cases of a level above the first, without learning anew.
 
         Levels below stay the same objects. Levels above were fitted at the mean of this one, so
@@ -345,7 +345,9 @@ class FittedNARGP:
         for out, kept in folds.each():
             lower = lent.rows(out) if lent else below._without(x[out]).predict(x[out])  # noqa: SLF001
             reduced = top.kept(kept)
-            mean, variance = propagate_moments([_Step(reduced)], x[out], lower.mean, lower.std**2)
+            mean, variance = propagate_moments(
+                [ProcessLevel(reduced)], x[out], lower.mean, lower.std**2
+            )
             variance += reduced.noise_at(np.column_stack([x[out], lower.mean]))
             parts.append(log_density(y[out], mean, variance))
         return np.concatenate(parts)
@@ -382,8 +384,8 @@ class FittedNARGP:
             )
         return level
 
-    def _steps(self, level: int) -> "list[_Step]":
-        return [_Step(process) for process in self.upper[: level - 1]]
+    def _steps(self, level: int) -> list[ProcessLevel]:
+        return [ProcessLevel(process) for process in self.upper[: level - 1]]
 
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs; a lent level 1 is left out."""
@@ -425,24 +427,6 @@ class FittedNARGP:
         if not own or len(widths) > 1 or not links or not all(process.single for process in own):
             raise ModelError("The saved NARGP's levels do not fit together. Train the model again.")
         return fitted
-
-
-@dataclass(frozen=True, slots=True)
-class _Step:
-    """An upper level, as the quadrature sees it."""
-
-    process: _gp.FittedGaussianProcess
-
-    @property
-    def bend(self) -> float:
-        return bend_of(self.process)
-
-    def moments(self, x: RowFeature, below: PerRow) -> tuple[PerRow, PerRow]:
-        answer = self.process.predict(np.column_stack([x, below]))
-        return answer.mean, answer.std**2
-
-    def moments_with_slopes(self, x: RowFeature, below: PerRow) -> Moments:
-        return self.process.moments(np.column_stack([x, below]))
 
 
 def _check_cases(
@@ -489,7 +473,9 @@ def _one_per_row(mean: Float[np.ndarray, "n *rest"], *, what: str) -> PerN:
     return mean
 
 
-def _central_differences(lower: Predicts, x: RowFeature, *, step: PerFeature) -> Moments:
+def _central_differences(
+    lower: Predicts, x: RowFeature, *, step: Float[np.ndarray, " feature"]
+) -> Moments:
     """Mean and variance of a lent level, and their gradients by central differences."""
     here = lower.predict(x)
     mean_slope, variance_slope = np.empty_like(x), np.empty_like(x)

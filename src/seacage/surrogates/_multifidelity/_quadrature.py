@@ -1,13 +1,15 @@
 """Uncertainty of the level below, carried through the nonlinear levels above it."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float, Int
 
-from seacage.surrogates._gp import chunks
+from seacage.surrogates._gp import FittedGaussianProcess, chunks
+from seacage.surrogates._multifidelity._kernel import bend_of
 from seacage.surrogates._prediction import Moments
 
 PerRest = Float[np.ndarray, "*rest"]
@@ -37,13 +39,19 @@ class Level(Protocol):
         ...
 
 
-@runtime_checkable
-class SlopedLevel(Level, Protocol):
-    """One that knows its gradients too."""
+@dataclass(frozen=True, slots=True)
+class ProcessLevel:
+    """A ``Level`` that is a process of the inputs and of the level below."""
 
-    def moments_with_slopes(self, x: RowFeature, below: PerRow) -> Moments:
-        """The same with their gradients in the features and, last, in the value below."""
-        ...
+    process: FittedGaussianProcess
+
+    @property
+    def bend(self) -> float:
+        return bend_of(self.process)
+
+    def moments(self, x: RowFeature, below: PerRow) -> tuple[PerRow, PerRow]:
+        answer = self.process.predict(np.column_stack([x, below]))
+        return answer.mean, answer.std**2
 
 
 def propagate_moments(
@@ -76,7 +84,7 @@ def propagate_moments(
 
 
 def propagate_slope(
-    levels: Sequence[SlopedLevel],
+    levels: Sequence[ProcessLevel],
     x: RowFeature,
     below: Moments,  # of the value below the first level, with their gradients
 ) -> RowFeature:
@@ -86,7 +94,7 @@ def propagate_slope(
         node, weight = rule(count)
         value, its_slope = below.rows(rows).at(node)
         inputs = np.repeat(x[rows], count, axis=0)
-        at = levels[0].moments_with_slopes(inputs, value).through(its_slope)
+        at = levels[0].process.moments(np.column_stack([inputs, value])).through(its_slope)
         above = at.mean_slope if len(levels) == 1 else propagate_slope(levels[1:], inputs, at)
         slope[rows] = np.einsum("rnf,n->rf", above.reshape(len(rows), count, -1), weight)
     return slope

@@ -52,13 +52,10 @@ class Modes:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OverTime:
-    """The shapes at all time steps of all cases, as far as principal modes know them.
+    """The shapes at all time steps of all cases, as far as principal modes know them."""
 
-    ``mean``: over all steps [m].
-    ``scatter``: mean product of two coordinates' distances from their means [m2].
-    """
-
-    mean: Float[np.ndarray, " coordinate"]
+    mean: Float[np.ndarray, " coordinate"]  # over all steps [m]
+    # Mean product of two coordinates' distances from their means [m2]
     scatter: Float[np.ndarray, "coordinate coordinate"]
 
     @classmethod

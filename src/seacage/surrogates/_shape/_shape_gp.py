@@ -26,7 +26,6 @@ RowNode3 = Float[np.ndarray, "row node 3"]
 LEVEL, DEVIATIONS = 0.95, 1.959964
 Nodes = slice | Int[np.ndarray, " node"]  # some nodes: a slice, or their numbers
 EVERY = slice(None)
-BLOCK = 4096  # rows of one coordinate that are answered at a time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -300,15 +299,8 @@ class FittedCoordinate:
     def predict(self, x: RowFeature, *, noisy: bool = False) -> Prediction:
         """The coordinate at each row of features, as the whole shape would answer [m]."""
         x = check_inputs(x, what="predict", width=self.shape.features)
-        nodes = np.array([self.node])
-        blocks = [
-            self.shape.predict_nodes(x[first : first + BLOCK], nodes, noisy=noisy)
-            for first in range(0, max(len(x), 1), BLOCK)
-        ]
-        return Prediction(
-            mean=np.concatenate([block.mean[:, 0, self.axis] for block in blocks]),
-            std=np.concatenate([block.std[:, 0, self.axis] for block in blocks]),
-        )
+        answer = self.shape.predict_nodes(x, np.array([self.node]), noisy=noisy)
+        return Prediction(mean=answer.mean[:, 0, self.axis], std=answer.std[:, 0, self.axis])
 
 
 def _fold_cases(symmetry: Symmetry, x: NFeature, node_position: NNode3) -> tuple[NFeature, NNode3]:

@@ -5,9 +5,7 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError
 from seacage.surrogates._features import check_turnable
-from seacage.surrogates._gp import StationaryKernel, condense, fit_process
 from seacage.surrogates._prediction import check_shapes
-from seacage.surrogates._shape._pca import modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 
 # Cases that the trial model learns from, and cases that it is asked about, at most
@@ -99,17 +97,14 @@ def _errors_by_image(
     seed: int,
 ) -> Float[np.ndarray, "image held_out"]:
     """Root mean square distance over the nodes of each held-out case, by each image [m]."""
-    shape = node_position.reshape(len(x), -1)
-    modes = modes_within(shape[training], COMPRESSION)
-    scores = modes.encode(shape[training])
-    kernel = StationaryKernel("matern-5/2")
-    model = fit_process(
-        kernel, x[training], scores, likelihood_outputs=condense(scores), restarts=0, seed=seed
-    )
+    # which asks this check before it folds by a symmetry
+    from seacage.surrogates._shape._shape_gp import EVERY, ShapeGP
+
+    trial = ShapeGP(tolerance=COMPRESSION, restarts=0)
+    model = trial.fit(x[training], node_position[training], seed=seed)
     missed = np.empty((len(symmetry), len(held_out)))
     for image in range(len(symmetry)):
-        score = model.predict(symmetry.turned(x[held_out], image)).mean.reshape(len(held_out), -1)
-        answer = modes.decode(score).reshape(len(held_out), -1, 3)
+        answer = model.mean_of_nodes(symmetry.turned(x[held_out], image), EVERY)
         moved_back = symmetry.moved(answer, symmetry.back(image))
         distance = np.sum((moved_back - node_position[held_out]) ** 2, axis=2)
         missed[image] = np.sqrt(distance.mean(axis=1))

@@ -186,7 +186,7 @@ def test_progress_ends_at_the_end():
         ({"duration": 21.0}, "duration = 21 s is no whole number of 20 s"),
         ({"every": 0.25}, "every = 0.25 s is no whole number of 0.1 s"),
         ({"time_step": 0.0}, "time_step = 0 s is no step"),
-        ({"watched": [65]}, "whose nodes are 0 … 64"),
+        ({"watched": [65]}, "Give nodes from 0 … 64"),
         ({"spin_up": float("nan")}, "spin_up = nan s"),
     ],
 )

@@ -17,7 +17,7 @@ from seacage.studies._benchmarks._methods import (
 from seacage.studies._benchmarks._ours import METHODS
 from seacage.studies._benchmarks._problems import Problem, problem_named
 from seacage.studies._benchmarks._runs import Runs
-from seacage.studies._benchmarks._scores import score_run, summary
+from seacage.studies._benchmarks._scores import summary
 from seacage.surrogates import rmse
 
 SCRIPT = """
@@ -62,14 +62,15 @@ def test_a_method_answers_every_seed_once(tmp_path, problem):
     first = runs.ensure(problem, mean, [0, 3], on_done=reported.append)
     # A report counts what is there when it is read: on a busy machine the next seed too.
     assert reported in ([0, 1, 2], [0, 2, 2])
-    assert [run.score.seed for run in first] == [0, 3]
+    assert [run.seed for run in first] == [0, 3]
     sample = problem.sample(3)
-    np.testing.assert_allclose(first[1].mean, sample.levels[-1][1].mean())
-    assert first[1].score.fit_s > 0.0
+    answer = np.full(problem.tests, sample.levels[-1][1].mean())
+    assert first[1].rmse == pytest.approx(rmse(sample.y_test, answer))
+    assert first[1].fit_s > 0.0
 
     made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")}
     again = runs.ensure(problem, mean, [3, 0], on_done=reported.append)
-    assert [run.score.seed for run in again] == [3, 0]
+    assert [run.seed for run in again] == [3, 0]
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")} == made
 
 
@@ -85,11 +86,9 @@ def test_a_method_never_sees_the_answers_to_the_tests(tmp_path, problem):
 def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
     runs = Runs(folder=tmp_path)
     (run,) = runs.ensure(problem, method(tmp_path, "refuse"), [5], on_done=lambda _: None)
-    assert run.score.error == "ValueError: seed 5 is not liked"
-    score = score_run(run, problem.sample(5).y_test)
-    assert score.error == run.score.error
-    assert np.isnan(score.rmse)
-    whole = summary([score, score])
+    assert run.error == "ValueError: seed 5 is not liked"
+    assert np.isnan(run.rmse)
+    whole = summary([run, run])
     assert (whole.seeds, whole.failures) == (0, 2)
 
 
@@ -97,7 +96,7 @@ def test_a_process_that_dies_is_reported(tmp_path, problem):
     (run,) = Runs(folder=tmp_path).ensure(
         problem, method(tmp_path, "vanish"), [0], on_done=lambda _: None
     )
-    assert run.score.error == "the process ended with code 1: gone"
+    assert run.error == "the process ended with code 1: gone"
 
 
 def test_what_was_begun_and_not_signed_is_made_again(tmp_path, problem):
@@ -107,7 +106,7 @@ def test_what_was_begun_and_not_signed_is_made_again(tmp_path, problem):
     kept = json.loads(sign.read_text())
     sign.unlink()
     (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
-    assert run.score.error is None
+    assert run.error is None
     assert kept["rows"] == problem.tests
 
 
@@ -118,7 +117,7 @@ def test_an_answer_that_is_no_number_is_an_error(tmp_path, problem):
     with answer.open("wb") as file:
         np.savez(file, mean=np.full(problem.tests, np.nan), std=np.ones(problem.tests))
     (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
-    assert "not a finite number" in run.score.error
+    assert "not a finite number" in run.error
 
 
 @pytest.mark.parametrize(

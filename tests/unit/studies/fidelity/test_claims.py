@@ -46,15 +46,22 @@ RESCALING = Rescaling(
     low_mae=1.0,
     left_mae=0.4,
     above_least=ABOVE,
+    emulation_mae=0.01,
 )
 GAIN = Gain(
-    sensor="depth-1", unit="m", teaching=50, judging=50, low_mae=1.0, multi_mae=1.1, gain=AROUND
+    sensor="depth-1",
+    unit="m",
+    mean_s=600.0,
+    teaching=50,
+    judging=50,
+    low_mae=1.0,
+    multi_mae=1.1,
+    gain=AROUND,
 )
 NULL = NullCase(
     null=Gains(sensors=(GAIN,), together=AROUND),
     real=Gains(sensors=(replace(GAIN, gain=ABOVE),), together=ABOVE),
     unjudged=(),
-    mean_s={"depth-1": 600.0},
 )
 FOULING = FoulingGap(
     sensors=("depth-1",),

@@ -24,13 +24,12 @@ def smooth():
     rng = np.random.default_rng(0)
     velocity = rng.uniform(-1.8, 1.8, (150, 2))
     values = answers(velocity, 8)
-    process = GaussianProcess(restarts=0).fit(current_features(velocity), values)
-    return _rescaling._tabulate(process), process
+    return GaussianProcess(restarts=0).fit(current_features(velocity), values)
 
 
 @pytest.fixture
 def learned(smooth, monkeypatch):
-    monkeypatch.setattr(_rescaling, "_fit_settled", lambda *_: (smooth[1], np.zeros(8)))
+    monkeypatch.setattr(_rescaling, "_fit_settled", lambda *_: (smooth, np.zeros(8)))
 
 
 def found(windows):
@@ -38,7 +37,7 @@ def found(windows):
         assert stage == "rescaling"
 
     stages = Stages(folder=Path("unused"), progress=check_stage)
-    return rescalings(windows, stages, seed=0).sensors
+    return rescalings(windows, stages, seed=0)
 
 
 def changed(windows, *, factor, turn, gain, offset):
@@ -68,7 +67,7 @@ def test_noise_that_no_rescaling_knows_is_left(learned):
 def test_what_waves_add_stays(smooth):
     windows = make_windows(days=2)
     shifted = replace(windows, low=windows.low + 7.0)
-    calm, wavy = (Moving(windows=some, settled=smooth[0]) for some in (windows, shifted))
+    calm, wavy = (Moving(windows=some, settled=smooth) for some in (windows, shifted))
     assert wavy.answers_at(1.3, 20.0) - calm.answers_at(1.3, 20.0) == pytest.approx(7.0)
     assert calm.answers_at(1.0, 0.0) == pytest.approx(windows.low)
 

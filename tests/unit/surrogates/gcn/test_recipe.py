@@ -3,7 +3,7 @@
 import pytest
 
 from seacage.conventions import InputError
-from seacage.surrogates._gcn._recipe import RECIPES, recipe_of
+from seacage.surrogates._gcn._layers import RECIPES, recipe_of
 
 
 def test_what_is_left_out_is_the_kinds_own() -> None:

@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from seacage.surrogates._gcn._graph import Graph
-from seacage.surrogates._gcn._layers import first_parameters, paper_network, parameter_shapes
-from seacage.surrogates._gcn._recipe import Recipe
+from seacage.surrogates._gcn._layers import (
+    Recipe,
+    first_parameters,
+    paper_network,
+    parameter_shapes,
+)
 from seacage.surrogates._gcn._training import TrainingSet, batches_of, learning_rates, train_network
 
 RANDOM = np.random.default_rng(0)

@@ -75,18 +75,6 @@ def test_one_output_of_unlike_ones_answers_as_within_the_whole() -> None:
     np.testing.assert_allclose(left_out.std, whole.leave_one_out().std[:, 1], rtol=1e-9)
 
 
-def test_the_sum_of_unlike_outputs_adds_their_variances() -> None:
-    whole = fitted(unlike_outputs(), "per-output")
-    share = np.array([2.0, -1.0])
-    total, parts = whole.combined(share), whole.predict(LINE)
-    answer = total.predict(LINE)
-    np.testing.assert_allclose(answer.mean, parts.mean @ share, rtol=1e-9)
-    np.testing.assert_allclose(answer.std**2, parts.std**2 @ share**2, rtol=1e-9)
-    np.testing.assert_allclose(total.noise, [whole.noise @ share**2], rtol=1e-9)
-    with pytest.raises(InputError, match="Ask the whole model instead"):
-        total.leave_one_out()
-
-
 def test_noise_that_grows_with_the_input_is_seen_to_grow() -> None:
     y = TRUTH + spread_by_input() * scatter(0)
     found = np.sqrt(fitted(y, "by-input").noise_at(LINE))
