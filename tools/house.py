@@ -17,11 +17,11 @@ MODULES = {"twin": 20, "surrogates": 11, "studies": 15, "dynamics": 4, "service/
 CEILINGS = {
     "names with a word of our own": 0,
     "prose with a word of our own": 0,
-    "functions named by a participle": 35,
+    "functions named by a participle": 34,
     "classes of the rename table": 0,
     "classes twice in a room": 0,
     "modules too many in a folder": 0,
-    "lines of code": 42_145,
+    "lines of code": 42_000,
 }
 OWN = "said|told|tell|unsaid|heard|unheard|lessons?|taught|judged|doubt|asked"
 PROSE = re.compile(r"\b(lessons?|taught|judged|heard|doubt)\b", re.IGNORECASE)

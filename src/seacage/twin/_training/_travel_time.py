@@ -93,7 +93,8 @@ class _Series:
         """Errors of the readings of days that are held out."""
         at = np.maximum(microseconds(self.pairs.time) + WITHIN_US[:, None], self.time[0])
         arrived = travel.current_at(self.time, self.velocity, at.ravel())
-        x = _columns(arrived).reshape(*at.shape, -1).mean(axis=0)
+        columns = _columns(arrived).reshape(*at.shape, -1)
+        x: Float[np.ndarray, "pair column"] = columns.mean(axis=0)
         value, odd = self.pairs.value, self.day % 2 == 1
         errors = np.empty_like(value)
         for out in (odd, ~odd):
