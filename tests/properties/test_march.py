@@ -27,7 +27,6 @@ from seacage.dynamics._physics._loads import (
 from seacage.dynamics._physics._motion import (
     NetLaw,
     Water,
-    _spring_damping,
     bar_damping,
     damped_bar_force,
     damped_tension,
@@ -419,7 +418,8 @@ class Stepper:
         self.tension.append(np.hstack([pull, float_lift(buoys, above)]))
         force = self.load + damped_bar_force(a.bars, a.mass, x, v) + bend_force(a.bends, x)
         force += float_force(a.floats, x, self.present(since).elevation)
-        force += spring_force(a.springs, a.position, x) + _spring_damping(a.springs, v)
+        force += spring_force(a.springs, a.position, x)
+        force[:, a.springs.nodes] -= a.springs.damping * v[:, a.springs.nodes]
         inertia = a.mass[:, None, None] * np.eye(3)
         pipes, tangent = a.slender, a.slender.tangent
         lack = pipes.added_mass[:, None, None] * tangent[:, :, None] * tangent[:, None]
