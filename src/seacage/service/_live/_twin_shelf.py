@@ -139,10 +139,10 @@ class TwinShelf:
         """
         terms = self.log(cage).terms
         if not terms:
-            known = ", ".join(self.cages()) or "none yet"
+            known = ", ".join(self.cages()) or "none"
             raise InputError(
-                f"twin: no twin of a cage {cage!r} is in force; cages with one: {known}. Start "
-                "`seacage serve` with the twin."
+                f"twin: no twin of {cage or 'any cage'} has been in force in {self.folder.parent} "
+                f"(of {known}, there). Give the data folder of `seacage serve`, or a cage of it."
             )
         now = terms[-1]
         if source is None:

@@ -176,7 +176,7 @@ def test_the_command_reaches_a_running_service_and_back(tmp_path):
 def test_the_command_names_what_it_lacks(tmp_path):
     write_twins(tmp_path)
     empty = command("twin", "replace", "--data", tmp_path / "var", tmp_path / "new")
-    assert (empty.exit_code, "cages with one: none yet" in empty.stderr) == (1, True)
+    assert (empty.exit_code, "no twin of any cage has been in force" in empty.stderr) == (1, True)
     for words in ((), (tmp_path / "new", "--previous")):
         neither = command("twin", "replace", "--data", tmp_path / "var", *words)
         assert (neither.exit_code, "or --previous" in neither.stderr) == (1, True)
