@@ -23,6 +23,7 @@ LEAST_MEANS = 144  # of a sensor, which are a day's
 # Those that are compared: distances [m] and limits [s]
 DISTANCES_M = (*range(50, 1000, 50), *range(1000, 3001, 250))
 LIMITS_S = (900.0, 1800.0, 2700.0, 3600.0)
+NO_ERROR = 1e-9  # smaller errors count as this [N] or [m]
 HARMONICS = (2, 3, 4)  # of the current's direction, beside the vector and its products
 
 PerPair = Float[np.ndarray, " pair"]
@@ -55,10 +56,9 @@ def fit_travel_time(field: FieldRecord, sensors: Iterable[str], training: Traini
         return int(np.argmin(np.sum(np.log(squares), axis=0)))
 
     chosen = errors[[best(half == 1), best(half == 0)]][half, np.arange(len(day))]
-    of_sensor, sizes = block_means(day * len(series) + sensor, np.abs(errors[0]), np.abs(chosen))
+    of_sensor, sizes = block_means(day * len(series) + sensor, errors[0], chosen)
     better = np.log(sizes[0] / sizes[1])
-    everywhere = np.ones(len(day), dtype=bool)
-    return candidates[best(everywhere) if is_gain(better, of_sensor // len(series)) else 0]
+    return candidates[best(half >= 0) if is_gain(better, of_sensor // len(series)) else 0]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -78,11 +78,11 @@ class _Series:
         if window is None or window[1] - window[0] < timedelta(days=LEAST_DAYS):
             return None
         pairs = align(field, sensor, start=window[0], end=window[1], mean_s=MEAN_S)
-        if len(pairs) < LEAST_MEANS or np.ptp(pairs.value) == 0.0:
-            return None
         velocity = Metocean.of_record(field.buoy).current_velocity
         sound = np.isfinite(velocity).all(axis=1)
-        return cls(pairs=pairs, time=microseconds(field.buoy.time[sound]), velocity=velocity[sound])
+        own = cls(pairs=pairs, time=microseconds(field.buoy.time[sound]), velocity=velocity[sound])
+        enough = len(pairs) >= LEAST_MEANS and len(np.unique(own.day % 2)) == 2
+        return own if enough and np.ptp(pairs.value) > 0.0 else None
 
     @property
     def day(self) -> Int[np.ndarray, " pair"]:
@@ -90,7 +90,7 @@ class _Series:
         return self.pairs.time.astype("datetime64[D]").astype(np.int64)
 
     def errors(self, travel: TravelTime) -> PerPair:
-        """Errors of the readings of days that are held out."""
+        """Sizes of the errors of readings of days that are held out."""
         at = np.maximum(microseconds(self.pairs.time) + WITHIN_US[:, None], self.time[0])
         arrived = travel.current_at(self.time, self.velocity, at.ravel())
         columns = _columns(arrived).reshape(*at.shape, -1)
@@ -100,7 +100,7 @@ class _Series:
         for out in (odd, ~odd):
             found = np.linalg.lstsq(x[~out], value[~out], rcond=None)[0]
             errors[out] = value[out] - x[out] @ found
-        return errors
+        return np.maximum(np.abs(errors), NO_ERROR)
 
 
 def _columns(velocity: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, "row column"]:

@@ -82,6 +82,18 @@ def test_it_takes_four_days_of_a_sensor_that_changes():
     assert fit_travel_time(stuck, ["depth-1", "depth-2"], TRAINING) == TravelTime()
 
 
+def test_readings_of_every_other_day_and_a_sensor_without_errors_do_not_break_it():
+    travel = TravelTime(distance_m=400.0, longest_s=1800.0)
+    record = field(travel)
+    first = record.sensors["depth-1"]
+    even = first.rows(first.time.astype("datetime64[D]").astype(int) % 2 == 0)
+    assert fit_travel_time(replace(record, sensors={"depth-1": even}), ["depth-1"], TRAINING) == (
+        TravelTime()
+    )
+    exact = field(travel, noise=0.0)
+    assert fit_travel_time(exact, ["depth-1"], TRAINING).longest_s == 1800.0
+
+
 def test_a_twin_is_trained_with_it_and_keeps_that_of_the_level_2_it_is_given():
     travel = TravelTime(distance_m=400.0, longest_s=1800.0)
     cage = stand_in_twin().cage
