@@ -192,7 +192,10 @@ def _each_minute(buoy: Record, travel: TravelTime) -> Record:
     minutes = np.arange(buoy.time[0].astype("datetime64[m]"), last + _MINUTE, _MINUTE)
     time = np.union1d(buoy.time, minutes[minutes > buoy.time[0]])
     held = np.searchsorted(buoy.time, time, side="right") - 1
-    return replace(buoy.rows(held), time=time)
+    values, flags = (
+        {key: column[held] for key, column in one.items()} for one in (buoy.values, buoy.flags)
+    )
+    return replace(buoy, time=time, values=values, flags=flags)
 
 
 def _compare(answers: Answers, field: FieldRecord, sensor: str) -> Readings:

@@ -1,10 +1,14 @@
 """Scores of sensors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from seacage.conventions import Origin
-from seacage.studies._sensor_scores import Readings, score_sensor
+from seacage.conventions import Flag, Origin
+from seacage.studies._sensor_scores import Answers, Readings, compare, score_sensor
+from seacage.testing import stand_in_field, stand_in_twin
+from seacage.twin import TravelTime
 
 START = np.datetime64("2020-02-22T00:05", "us")
 
@@ -100,3 +104,22 @@ def test_the_interval_is_scored_on_means_as_long_as_those_that_teach():
     assert score.raw.coverage == 0.0
     assert score.minutes.coverage == 1.0
     assert score.minutes.readings == 48
+
+
+def test_answers_to_water_that_takes_its_time_are_made_each_minute():
+    twin = stand_in_twin()
+    field = stand_in_field(twin.cage, days=0.4)
+    flags = np.full(len(field.buoy), Flag.GOOD)
+    flags[5] = Flag.FAIL
+    buoy = replace(field.buoy, flags={"current_speed_m_s": flags})
+    late = replace(twin, travel_time=TravelTime(distance_m=300.0, longest_s=1800.0))
+    answers = Answers.of(late, buoy)
+    steps = np.diff(answers.time)
+    assert (steps <= np.timedelta64(60, "s")).all()
+    assert answers.time[-1] >= buoy.time[-1] + np.timedelta64(1800, "s")
+    found = compare(answers, replace(field, buoy=buoy))["depth-1"]
+    some = slice(200, 210)
+    water = late.travel_time.water_at(buoy, found.time[some].astype("datetime64[m]"))
+    expected = late.predict(water).sensor.mean[:, twin.sensor_names.index("depth-1")]
+    np.testing.assert_allclose(found.multi[some], expected, rtol=1e-6)
+    assert len(Answers.of(twin, buoy).time) == len(buoy)
