@@ -108,7 +108,7 @@ def truth_coverage(
     since_day
         Of the field: judging begins there [d].
     """
-    words, water = _judging_words(field, since_day)
+    words, water = _judging_words(twin, field, since_day)
     answer = twin.predict(water)
     scores: list[SensorCoverage] = []
     for column, name in enumerate(twin.sensor_names):
@@ -196,10 +196,10 @@ def held(truth: Series, mean: Series, std: Series) -> Held:
 
 
 def _judging_words(
-    field: FieldRecord, since_day: float
+    twin: Twin, field: FieldRecord, since_day: float
 ) -> tuple[Int[np.ndarray, " word"], Metocean]:
     """Rows of the buoy that judge, and the water that they tell."""
-    water = Metocean.of_record(field.buoy)
+    water = twin.travel_time.water_at(field.buoy, field.buoy.time)
     start = field.buoy.time[0].astype("datetime64[D]") + np.timedelta64(
         round(since_day * 86400), "s"
     )
@@ -252,7 +252,14 @@ def _alone(
 ) -> tuple[Prediction, float]:
     """What a NARGP alone says, taught by the same points; and the noise that it found."""
     window, inputs = twin.provenance.training_windows[sensor], twin.models.inputs
-    pairs = align(field, sensor, start=window.start, end=window.end, mean_s=training.mean_s)
+    pairs = align(
+        field,
+        sensor,
+        start=window.start,
+        end=window.end,
+        mean_s=training.mean_s,
+        travel_time=twin.travel_time,
+    )
     chosen = spread_out(pairs, training.high_fidelity_points, seed=training.seed)
     fitted = model.fit(
         [(chosen.metocean.features(inputs), chosen.value)],
