@@ -188,7 +188,7 @@ def score_sensor(readings: Readings, *, seed: int, truth: Readings | None = None
 
 def _each_minute(buoy: Record, travel: TravelTime) -> Record:
     """Readings held from minute to minute, until the current of the last has arrived."""
-    last = buoy.time[-1] + np.timedelta64(math.ceil(travel.history_s), "s")
+    last = buoy.time[-1] + np.timedelta64(math.ceil(travel.longest_s), "s")
     minutes = np.arange(buoy.time[0].astype("datetime64[m]"), last + _MINUTE, _MINUTE)
     time = np.union1d(buoy.time, minutes[minutes > buoy.time[0]])
     held = np.searchsorted(buoy.time, time, side="right") - 1

@@ -12,7 +12,7 @@ from seacage.twin._metocean import Metocean
 
 SLACK = 1e-6  # water slower than this counts as this fast [m/s]
 # Samples further apart tell nothing of the current between them [s]
-LONGEST_GAP_S = 10800.0
+LONGEST_GAP_S = 7200.0
 
 Instants = Int[np.ndarray, " row"]  # [us] since 1970
 Current = Float[np.ndarray, "row 2"]  # towards (east, north) [m/s]
@@ -46,8 +46,8 @@ class TravelTime:
 
     @property
     def history_s(self) -> float:
-        """How far back the buoy's samples are needed [s]."""
-        return self.longest_s if self.distance_m else 0.0
+        """How far back the buoy's samples are needed [s]: sound ones may be a gap before."""
+        return self.longest_s + LONGEST_GAP_S if self.distance_m else 0.0
 
     def of(self, velocity: Current) -> Float[np.ndarray, " row"]:
         """Travel time of some currents [s]."""

@@ -5,7 +5,7 @@ from datetime import timedelta
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from seacage.conventions import Flag, InputError, Origin
@@ -59,10 +59,10 @@ def test_without_a_distance_it_is_the_buoys_last_current():
 
 
 def test_before_the_first_sample_and_across_a_gap_it_is_the_newest_current():
-    record = buoy([0, 1, 182, 183], [0.1, 0.2, 0.3, 0.35])
+    record = buoy([0, 1, 122, 123], [0.1, 0.2, 0.3, 0.35])
     assert east(SHORT, record, [0, 1]) == pytest.approx([0.1, 0.2])
-    assert east(SHORT, record, [182]) == pytest.approx([0.3])  # 181 min without a sample
-    assert east(SHORT, buoy([0, 179], [0.1, 0.2]), [179]) != pytest.approx([0.2])
+    assert east(SHORT, record, [122]) == pytest.approx([0.3])  # 121 min without a sample
+    assert east(SHORT, buoy([0, 119], [0.1, 0.2]), [119]) != pytest.approx([0.2])
 
 
 def test_there_is_none_before_the_first_sample_or_where_the_newest_failed():
@@ -92,6 +92,11 @@ def travelling_twin():
 FLAGS = st.sampled_from([Flag.GOOD, Flag.GOOD, Flag.GOOD, Flag.SUSPECT, Flag.FAIL, Flag.MISSING])
 
 
+# A failed sample before a gap, so far back that only it would be remembered
+@example(
+    rows=[(1, 0.1, Flag.GOOD), (7, 0.2, Flag.FAIL), (30, 0.5, Flag.GOOD), (12, 0.0, Flag.GOOD)],
+    to=0.0,
+)
 @settings(max_examples=20)
 @given(
     rows=st.lists(
