@@ -83,6 +83,10 @@ class TravelTime:
         Waves are those of the newest sample, and all is NaN before the first or where the newest
         value failed its checks.
         """
+        if len(time):  # all others are of no use, and there may be many
+            first = time.min() - np.timedelta64(round(1e6 * self.history_s), "us")
+            start, end = np.searchsorted(buoy.time, [first, time.max()], side="right").tolist()
+            buoy = buoy.rows(slice(max(start - 1, 0), max(end, 1)))
         rows = np.searchsorted(buoy.time, time, side="right") - 1
         reported = Metocean.of_record(buoy)
         water = reported.rows(rows)

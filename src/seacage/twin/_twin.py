@@ -239,6 +239,7 @@ class Twin:
         ``samples``: in any order. Those without flags are checked.
         ``amendments``: flags of earlier samples that have changed since.
         """
+        history_s = {self.buoy: self.travel_time.history_s}
         state, notices = receive(
             state,
             samples,
@@ -246,15 +247,11 @@ class Twin:
             timeouts={self.buoy: self.timeouts.stale_after_s}
             | dict.fromkeys(self.sensor_names, self.timeouts.sensor_silent_after_s),
             limits=self.timeouts,
-            history_s=self._history_s,
+            history_s=history_s,
             amendments=amendments,
         )
         state, disorder_s = self._adapt(state, now), self.timeouts.disorder_s
-        return forget(state, now, disorder_s=disorder_s, history_s=self._history_s), notices
-
-    @property
-    def _history_s(self) -> dict[str, float]:
-        return {self.buoy: self.travel_time.history_s}
+        return forget(state, now, disorder_s=disorder_s, history_s=history_s), notices
 
     def _adapt(self, state: TwinState, now: datetime) -> TwinState:
         """Adapt the intervals to the readings of the blocks that are due at a time.

@@ -40,10 +40,8 @@ def fit_travel_time(field: FieldRecord, sensors: Iterable[str], training: Traini
     series = [one for name in sensors if (one := _Series.of(field, name, training)) is not None]
     if not series:
         return TravelTime()
-    candidates = [
-        TravelTime(distance_m=distance, longest_s=longest)
-        for distance, longest in ((0.0, 0.0), *product(DISTANCES_M, LIMITS_S))
-    ]
+    numbers = ((0.0, 0.0), *product(DISTANCES_M, LIMITS_S))
+    candidates = [TravelTime(distance_m=one, longest_s=most) for one, most in numbers]
     day = np.concatenate([one.day for one in series])
     errors = np.stack([np.concatenate([one.errors(each) for one in series]) for each in candidates])
     sensor = np.repeat(np.arange(len(series)), [len(one.day) for one in series])
