@@ -63,16 +63,14 @@ def check_form(path: Path) -> None:
         raise InputError(f"{path} ends in no form that is known. End it in {', '.join(_FORMS)}.")
 
 
-def replay_in_blocks(
-    twin: Twin, buoy: Record, *, among: Record | None = None
-) -> Iterator[Replayed]:
+def replay_in_blocks(twin: Twin, buoy: Record, *, among: Record) -> Iterator[Replayed]:
     """Answer a buoy's record block by block; at least one, which may be empty.
 
-    ``among``: a record with these rows and those before them; None for the rows alone.
+    ``among``: a record with these rows and those before them.
     """
     for first in range(0, max(len(buoy), 1), BLOCK):
         some = buoy.rows(slice(first, first + BLOCK))
-        answer = twin.predict_record(some, among=buoy if among is None else among)
+        answer = twin.predict_record(some, among=among)
         yield Replayed(buoy=some, answer=answer, cage=twin.cage, origin=str(twin.origin))
 
 

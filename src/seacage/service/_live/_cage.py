@@ -126,6 +126,7 @@ class LiveCage:
         request = shelf.log(name).open_request if shelf else None
         self.past = replace(past, since=shelf and shelf.begin(name, past.id, clock.now()))
         self.topology = topology_of(name, twin, speed=clock.speed)
+        self.rest_position = np.array(self.topology.rest_position_m)
         self.desk = AlarmDesk(self.past, policy=limits)
         if request and self.past.since:  # asked for, or put into its folder, since the last start
             self.desk.follow(self.past, limits, request, now=clock.now())
@@ -136,11 +137,6 @@ class LiveCage:
     def twin(self) -> Twin:
         """The twin in force."""
         return self.past.twin
-
-    @property
-    def rest_position(self) -> Float[np.ndarray, "node 3"]:
-        """Where the nodes are in still water [m]."""
-        return np.array(self.topology.rest_position_m)
 
     @property
     def latest_allowed(self) -> datetime:
@@ -347,6 +343,7 @@ class LiveCage:
                 shelf.refuse(self.name, str(error))
             return self.live.follow(before)
         self.past, self.topology = after, topology
+        self.rest_position = np.array(topology.rest_position_m)
         self.desk.follow(after, limits, request, now=now)
         return answered
 

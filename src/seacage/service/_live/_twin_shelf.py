@@ -73,7 +73,8 @@ class TwinShelf:
 
     def __init__(self, data: Path, *, key: bytes | None = None) -> None:
         self.folder, self._key = data / "twins", key
-        self._known: dict[str, TwinLog] = {}
+        # By cage: what its file was known by, and what it held
+        self._known: dict[str, tuple[tuple[int, int, int] | None, TwinLog]] = {}
 
     def cages(self) -> list[str]:
         """Name the cages that have had a twin."""
@@ -84,14 +85,17 @@ class TwinShelf:
 
         Raises InputError: it is none.
         """
-        path = self.folder / f"{cage}.json"
-        try:
-            self._known[cage] = _log_of(read_text(path) if path.exists() else "", path)
-        except InputError as error:
-            if cage not in self._known:
-                raise
-            _log.error("log of twins spoiled", cage=cage, reason=str(error))
-        return self._known[cage]
+        path, before = self.folder / f"{cage}.json", self._known.get(cage)
+        status = path.stat() if path.exists() else None
+        stamp = status and (status.st_ino, status.st_mtime_ns, status.st_size)
+        if before is None or before[0] != stamp:  # a running service looks at every step
+            try:
+                before = self._known[cage] = stamp, _log_of(read_text(path) if stamp else "", path)
+            except InputError as error:
+                if before is None:
+                    raise
+                _log.error("log of twins spoiled", cage=cage, reason=str(error))
+        return before[1]
 
     def read(self, twin: str) -> Twin:
         """Read a kept twin by its hash. Raises ModelError: it is gone, damaged or not signed."""
