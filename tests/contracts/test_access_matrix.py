@@ -33,7 +33,7 @@ CALLS = {
 } | {"get /openapi.json": {}}
 ACTIONS = (
     {"post /api/v1/cages/{cage}/samples": "ingest"}
-    | {call: "ack" for call in CALLS if re.match("post .*/(alarms|damage)/", call)}
+    | {call: "ack" for call in CALLS if re.match("post .*/(alarms/|damage/|journal$)", call)}
     | {"post /api/v1/cages/{cage}/twin": "admin"}
 )
 """What a call takes that does not only read."""

@@ -101,6 +101,9 @@ class FaultDetectorSettings:
         Mean and standard deviation, from sensor to sensor, of the relative loss of drag by a hole
         large enough for an alarm [-]: a hole acts on the sensors near it and on the lines that
         bear the load there. Fouling adds drag and never takes any away.
+    net_change_sd
+        Standard deviation of the relative change of drag by another or a cleaned net, the same at
+        all sensors [-].
     block_weight
         Weight of a block's log-likelihood ratio [-], as residuals of neighbouring blocks are
         correlated.
@@ -148,6 +151,7 @@ class FaultDetectorSettings:
     corner_stiffness: float = 0.05
     drag_loss: float = 0.25
     drag_loss_sd: float = 0.15
+    net_change_sd: float = 0.4
     block_weight: float = 0.6
     evidence_memory: float = 144.0
     active_widening: float = 3.0

@@ -16,9 +16,18 @@ from seacage.service._http._dependencies import (
     may_acknowledge,
     may_read,
 )
-from seacage.service._schemas._alarms import Alarms, AlarmState, Handling, Journal, Kpi, alarm_state
+from seacage.service._schemas._alarms import (
+    Alarms,
+    AlarmState,
+    Change,
+    Handling,
+    Journal,
+    JournalLine,
+    Kpi,
+    alarm_state,
+)
 from seacage.service._schemas._state import LineState
-from seacage.twin import alarm_kpi
+from seacage.twin import Action, alarm_kpi
 
 _WATCH = timedelta(days=7)
 _LINES = 10_000  # of the journal, counted back from the end of the span
@@ -79,6 +88,18 @@ def get_journal(live: Live, start: From = None, end: To = None, limit: Limit = 1
     """Give the last lines of a span, in time order: what happened to which alarm, and who did."""
     lines = live.store.journal(live.name, start=start, end=end, limit=limit, newest=True)
     return Journal.model_validate({"lines": lines})
+
+
+@alarms.post("/journal", dependencies=may_acknowledge, responses=WRITE)
+async def record_change(live: Live, body: Change, who: Who) -> JournalLine:
+    """Write down that the net was changed or cleaned, or a sensor moved.
+
+    The fault detector then takes what the change does to the readings for usual. The answer comes
+    when the line is on disk.
+    """
+    change = Action(body.change)
+    line = await live.record_change(change, body.sensor, t=body.t, who=who, why=body.why)
+    return JournalLine.model_validate(line)
 
 
 @alarms.get("/kpi", dependencies=may_read, responses=READ)

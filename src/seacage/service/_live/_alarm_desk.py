@@ -175,6 +175,31 @@ class AlarmDesk:
         self._announce(happened)
         return alarm, kept
 
+    def record_change(
+        self, change: Action, sensor: str | None, *, t: datetime, who: str, why: str
+    ) -> tuple[AlarmEvent, Future[None]]:
+        """Write down that people changed the cage, so that no fault is detected in it.
+
+        ``change``: of the netting, or a sensor's, which is then named. ``t``: when it happened.
+        ``who``, ``why``: for the journal.
+
+        Raises InputError: the change and the sensor do not fit each other or the cage.
+        Returns the journal's line, and when that is on disk.
+        """
+        moved = change is Action.SENSOR_MOVED
+        if moved and sensor not in (there := self._twin.sensor_names):
+            raise InputError(
+                f"sensor = {sensor!r} is not among the cage's: {', '.join(there) or 'none'}. Name "
+                "the one that was moved; where the buoy was moved, train another twin."
+            )
+        if not moved and sensor is not None:
+            raise InputError(f"sensor = {sensor!r} has no part in '{change}'. Leave it out.")
+        alarm = f"irregular.{sensor}" if moved else "net.net"
+        detector = self._book.detector.after_change(alarm, self._twin.fault_detector)
+        self._book = replace(self._book, detector=detector)
+        line = AlarmEvent(alarm=alarm, action=change, t=t, who=who, why=why, twin=self._id)
+        return line, self._keep([line])
+
     def _open_book(self) -> AlarmBook:
         kept = self._store.alarm_book(self._cage)
         try:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
-from datetime import datetime
+from datetime import datetime, timedelta
 from functools import cached_property
 from pathlib import Path
 from typing import assert_never
@@ -32,7 +32,9 @@ from seacage.service._schemas._state import AlarmBrief, State
 from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
+    Action,
     Alarm,
+    AlarmEvent,
     AlarmPolicy,
     Answered,
     Event,
@@ -46,6 +48,7 @@ from seacage.twin import (
 _GATHERED_S = 0.1  # what comes within so long is stepped through together, and shown once [s]
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
+_LONG_AGO = timedelta(days=30)  # of a change of the cage that is written down
 _PATIENCE_S = 30.0  # of who replaces a twin
 _log = structlog.get_logger(__name__)
 
@@ -262,6 +265,27 @@ class LiveCage:
             self._publish(self.snapshot.answered)
         await asyncio.wrap_future(kept)
         return after
+
+    async def record_change(
+        self, change: Action, sensor: str | None, *, t: datetime | None, who: str, why: str
+    ) -> AlarmEvent:
+        """Write down that people changed the cage; returns when that is on disk.
+
+        ``t``: when it happened; None for now. The others are as of ``AlarmDesk``.
+
+        Raises InputError: it lies ahead or long ago, or does not fit the cage.
+        Raises StoreError: the disk did not take it.
+        """
+        async with self._stepping:
+            now = self.clock.now()
+            if t is not None and not now - _LONG_AGO <= t <= now:
+                raise InputError(
+                    f"t = {t.isoformat()} is not within the {_LONG_AGO.days} days until now, "
+                    f"{now.isoformat()}. Give the time of the change, or leave it out for now."
+                )
+            line, kept = self.desk.record_change(change, sensor, t=t or now, who=who, why=why)
+        await asyncio.wrap_future(kept)
+        return line
 
     async def reset_damage(self, line: str, *, who: str, why: str) -> State:
         """Count a line's damage anew, as the journal says; returns when that is on disk.

@@ -2,11 +2,11 @@
 
 from dataclasses import asdict
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
+from seacage.service._schemas._base import AbstractAnswer, AbstractRequest, Time
 from seacage.service._schemas._state import AlarmBrief
 from seacage.twin import Alarm, AlarmPolicy, alarm_text
 
@@ -53,6 +53,19 @@ class Handling(AbstractRequest):
             description="How long to shelve; until it clears once if left out.",
         ),
     ] = None
+
+
+class Change(AbstractRequest):
+    """Work of people on a cage: its net was changed or cleaned, or a sensor was moved.
+
+    ``sensor`` names the one that was moved or replaced, else it is left out. ``t`` is when it
+    happened, within the last 30 days; now if left out.
+    """
+
+    change: Literal["net changed", "net cleaned", "sensor moved"]
+    sensor: Annotated[str | None, Field(max_length=64, examples=["depth-2"])] = None
+    t: Annotated[Time | None, Field(strict=False)] = None
+    why: Annotated[str, Field(max_length=LONGEST_WORDS)] = ""
 
 
 class JournalLine(AbstractAnswer):

@@ -23,6 +23,10 @@ class Action(StrEnum):
     IN_SERVICE = "in service"
     RESET = "reset"  # a line's count of damage
     REPLACED = "replaced"  # the twin of the cage, which the line names in place of an alarm
+    # Changes of the cage itself; the line names the alarm that such a change could raise
+    NET_CHANGED = "net changed"
+    NET_CLEANED = "net cleaned"
+    SENSOR_MOVED = "sensor moved"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -53,6 +53,26 @@ class Baseline:
         """Return a copy with the prior covariance, as the cage has changed."""
         return replace(self, covariance=as_tuples(self._prior(settings)))
 
+    def after_net_change(self, settings: FaultDetectorSettings) -> Self:
+        """Return a copy in which the drag on the netting may have changed by any usual amount."""
+        drag = np.arange(2 * len(self.sensors)) >= len(self.sensors)
+        change = settings.net_change_sd**2 * (drag[:, None] & drag)
+        return replace(self, covariance=as_tuples(self._prior(settings) + change))
+
+    def after_move(self, sensor: str, settings: FaultDetectorSettings) -> Self:
+        """Return a copy in which nothing is known of one sensor, which was moved."""
+        own = np.array([name == sensor for name in self.sensors], dtype=bool)
+        both = np.concatenate([own, own])  # its offset and its drag
+        sd = np.repeat([settings.wide_sd, settings.net_change_sd], len(own))
+        before = np.reshape(self.covariance, (len(sd), len(sd)))
+        covariance = np.where(both[:, None] | both, np.diag(sd**2), before)
+        return replace(
+            self,
+            size=tuple(np.where(both, 0.0, self.size).tolist()),
+            covariance=as_tuples(covariance),
+            mean_square=tuple(np.where(own, settings.mean_square, self.mean_square).tolist()),
+        )
+
     def shift(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Shift:
         """Return the shift of the readings in a block, with the covariance of its residuals."""
         response = self._response(block)

@@ -49,6 +49,23 @@ class FaultDetector:
         monitors = {name: monitor.restarted() for name, monitor in self.monitors.items()}
         return type(self)(monitors=monitors)
 
+    def after_change(self, alarm: str, settings: FaultDetectorSettings) -> Self:
+        """Return a copy for a cage on which people have changed what an alarm watches.
+
+        ``alarm``: ``net.net``, or ``irregular.`` and a sensor that was moved. Its evidence is
+        dropped, and the baseline is estimated anew where the change shows. Evidence of other alarms
+        stays where these are active.
+        """
+        kind, _, source = alarm.partition(".")
+        if kind == "net":
+            baseline = self.baseline.after_net_change(settings)
+        else:
+            baseline = self.baseline.after_move(source, settings)
+        kept = {*self.active} - {alarm}
+        evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in kept}
+        after = self.interrupted()
+        return replace(after, baseline=baseline, evidence=evidence, waited=0)
+
     def stepped(
         self,
         # The twin, its state, and its answer now

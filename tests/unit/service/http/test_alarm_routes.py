@@ -113,3 +113,46 @@ def test_a_span_that_ends_before_it_starts_is_refused_in_a_sentence(live):
     answer = live.reader.get("/api/v1/cages/ace/kpi", params={"from": at(5), "to": at(0)})
     assert answer.status_code == 422
     assert "end after the start" in answer.json()["detail"]
+
+
+def changed(operator: httpx.Client, **body):
+    return operator.post("/api/v1/cages/ace/journal", json=body)
+
+
+def test_work_on_the_cage_stands_in_the_journal_when_and_by_whom_it_was_done(live, operator):
+    answer = changed(operator, change="net cleaned", why="Two discs, all sides.")
+    assert answer.status_code == 200
+    earlier = (live.clock.at - timedelta(hours=5)).isoformat()
+    moved = changed(operator, change="sensor moved", sensor="depth-2", t=earlier)
+    assert moved.json()["alarm"] == "irregular.depth-2"
+    lines = live.reader.get("/api/v1/cages/ace/journal").json()["lines"]
+    found = [(one["action"], one["alarm"], one["who"], one["why"]) for one in lines]
+    assert found[-2:] == [
+        ("sensor moved", "irregular.depth-2", "Ingrid", ""),
+        ("net cleaned", "net.net", "Ingrid", "Two discs, all sides."),
+    ]
+    assert lines[-2]["twin"] == live.state()["twin"]
+
+
+@pytest.mark.parametrize(
+    ("body", "reason"),
+    [
+        ({"change": "sensor moved"}, "sensor = None is not among the cage's: depth-1"),
+        ({"change": "sensor moved", "sensor": "buoy-1"}, "where the buoy was moved, train another"),
+        ({"change": "net changed", "sensor": "depth-1"}, "has no part in 'net changed'"),
+        ({"change": "net changed", "t": "2017-01-01T00:00:00Z"}, "is not within the 30 days until"),
+        ({"change": "net changed", "t": "2030-01-01T00:00:00Z"}, "is not within the 30 days until"),
+        ({"change": "net sold"}, "Input should be 'net changed', 'net cleaned' or 'sensor moved'"),
+    ],
+)
+def test_a_change_that_cannot_have_been_is_refused_and_not_written_down(
+    live, operator, body, reason
+):
+    answer = changed(operator, **body)
+    assert answer.status_code == 422
+    assert reason in str(answer.json()["detail"])
+    assert live.reader.get("/api/v1/cages/ace/journal").json()["lines"] == []
+
+
+def test_who_only_reads_may_not_write_into_the_journal(live):
+    assert changed(live.reader, change="net cleaned").status_code == 403

@@ -320,3 +320,36 @@ def test_a_reading_that_failed_its_checks_is_the_latest_and_not_averaged():
     monitor = SensorMonitor().extended(reading(0, 90.0, Flag.FAIL), 14.0)
     assert monitor.latest == NOON
     assert monitor.count == 0
+
+
+UNEVEN = 0.5 * np.array([1.2, 0.9, 0.5, 1.1, 0.3, 1.0, 1.3, 0.7])
+
+
+@pytest.mark.parametrize("seed", [33, 35, 37])
+def test_a_cleaning_looks_like_a_hole_unless_it_was_written_down(seed):
+    assert learned().through(quiet(seed, 3.0), lost=UNEVEN).raised == ["net.net"]
+    watch = learned()
+    watch.detector = watch.detector.after_change("net.net", SETTINGS)
+    assert watch.through(quiet(seed, 3.0), lost=UNEVEN).raised == []
+
+
+@pytest.mark.parametrize("seed", [39, 41, 43])
+def test_a_moved_sensor_is_irregular_unless_that_was_written_down_and_others_stay_watched(seed):
+    moved = quiet(seed, 3.0) + only("depth-1", 8.0 * OWN[0])
+    assert learned().through(moved).raised == ["irregular.depth-1"]
+    watch = learned()
+    watch.detector = watch.detector.after_change("irregular.depth-1", SETTINGS)
+    assert watch.through(moved).raised == []
+    assert watch.through(moved[:DAY] + cut(7)).raised == ["bridle.bridle-8"]
+
+
+def test_a_parted_bridle_goes_on_showing_after_a_cleaning_and_a_net_alarm_does_not():
+    parted = quiet(45, 2.0) + cut(7)
+    watch = learned().through(parted)
+    assert watch.active == {"bridle.bridle-8"}
+    watch.detector = watch.detector.after_change("net.net", SETTINGS)
+    assert watch.through(parted).active == {"bridle.bridle-8"}
+    torn = learned().through(quiet(47, 3.0), lost=UNEVEN)
+    assert torn.active == {"net.net"}
+    torn.detector = torn.detector.after_change("net.net", SETTINGS)
+    assert torn.through(quiet(49, 1.0), lost=UNEVEN).active == set()
