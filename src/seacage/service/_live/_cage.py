@@ -196,9 +196,13 @@ class LiveCage:
             stored = await self._store_samples(samples)
         return stored.new
 
-    async def begin(self, backlog: Sequence[Sample]) -> None:
-        """Forget everything and stand where a backlog ends, as a replay does at its start."""
+    async def begin(self, backlog: Sequence[Sample], *, restart: Callable[[], None]) -> None:
+        """Forget everything and stand where a backlog ends, as a replay does at its start.
+
+        ``restart``: sets the clock back, between two steps.
+        """
         async with self._stepping:
+            restart()
             await asyncio.to_thread(self.store.forget, self.name)
             self.desk.begin_anew()
             self._take_pending()

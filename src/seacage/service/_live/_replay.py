@@ -5,6 +5,7 @@ import heapq
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from functools import partial
 
 import numpy as np
 
@@ -28,8 +29,8 @@ class Replay:
     async def feed(self, cage: LiveCage, clock: ReplayClock) -> None:
         """Feed the samples when their time has come; begin anew at the end, for ever."""
         while True:
-            clock.restart(self.start)
-            await cage.begin(list(self._merge(self.start - _LEAD, self.start)))
+            backlog = list(self._merge(self.start - _LEAD, self.start))
+            await cage.begin(backlog, restart=partial(clock.restart, self.start))
             await self._feed(cage, clock)
 
     async def _feed(self, cage: LiveCage, clock: ReplayClock) -> None:

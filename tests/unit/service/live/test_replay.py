@@ -3,6 +3,7 @@ from datetime import timedelta
 
 import numpy as np
 import pytest
+from structlog.testing import capture_logs
 
 from seacage.records import moment
 from seacage.service._live._cage import LiveCage
@@ -49,9 +50,9 @@ def test_a_replay_feeds_in_time_order_and_begins_anew_with_a_clean_store(field, 
     begun, fed = [], []
     begin, take = cage.begin, cage.take
 
-    async def counted_begin(backlog):
+    async def counted_begin(backlog, *, restart):
         begun.append(len(backlog))
-        await begin(backlog)
+        await begin(backlog, restart=restart)
         assert len(store.samples("ace", limit=999)) == len(backlog)
         if len(begun) == 2:
             raise asyncio.CancelledError
@@ -70,6 +71,38 @@ def test_a_replay_feeds_in_time_order_and_begins_anew_with_a_clean_store(field, 
     assert len(fed) == len(short) - 5 + len(depth)
 
 
+def test_no_sample_is_ahead_of_a_clock_that_begins_anew(field, tmp_path):
+    start = moment(field.buoy.time[0]) + timedelta(hours=1)
+    short = field.buoy.between(start - timedelta(hours=1), start + timedelta(hours=1))
+    replay = Replay(records=(short,), start=start)
+    clock, store = ReplayClock(start, speed=20_000.0), Store(tmp_path / "replay.sqlite")
+    cage = LiveCage(
+        name="ace", twin=stand_in_twin(), store=store, clock=clock, metrics=Metrics(), tick_s=0.1
+    )
+    begin, begun = cage.begin, []
+
+    async def begin_late(backlog, *, restart):
+        await asyncio.sleep(0.3 if begun else 0.0)  # a step comes between the end and the beginning
+        begun.append(clock.now())
+        await begin(backlog, restart=restart)
+        if len(begun) == 4:
+            raise asyncio.CancelledError
+
+    async def live():
+        stepping = asyncio.create_task(cage.run())
+        try:
+            await replay.feed(cage, clock)
+        finally:
+            stepping.cancel()
+
+    cage.begin = begin_late
+    with capture_logs() as lines, pytest.raises(asyncio.CancelledError):
+        asyncio.run(live())
+    store.close()
+    assert min(begun[1:]) >= moment(short.time[-1])
+    assert [one for one in lines if one["event"] == "flagged"] == []
+
+
 def test_what_was_before_the_start_is_there_from_the_beginning(field, tmp_path):
     replay = replay_of(field.buoy, field)
     clock, store = ReplayClock(replay.start, speed=1.0), Store(tmp_path / "replay.sqlite")
@@ -78,7 +111,7 @@ def test_what_was_before_the_start_is_there_from_the_beginning(field, tmp_path):
     )
     backlog = list(replay._merge(replay.start - timedelta(hours=2), replay.start))
     assert not cage.snapshot.state.valid
-    asyncio.run(cage.begin(backlog))
+    asyncio.run(cage.begin(backlog, restart=lambda: None))
     assert cage.snapshot.state.valid
     assert all(sensor.measured is not None for sensor in cage.snapshot.state.sensors)
     assert np.isfinite(cage.snapshot.answered.answer.node_position).all()
