@@ -15,7 +15,7 @@ from seacage.testing import stand_in_twin
 from seacage.twin import AlarmPolicy
 
 pytestmark = pytest.mark.usefixtures("built_page")
-FIRST_LOAD_BYTES = 1_000_000  # what a phone on a boat can wait for
+FIRST_LOAD_BYTES = 260_000  # what a phone on a boat can wait for, in any language
 UPDATE_BYTES = 10_000
 # Bridles 9 and 10 of the stand-in carry 0.12 of their capacity in 0.5 m/s, 0.6 in 1.27 m/s.
 STRICT = AlarmPolicy.from_dict({"load": {"raise_at": 0.55, "clear_at": 0.4, "on_delay_s": 60.0}})
@@ -30,15 +30,6 @@ def live(tmp_path: Path):
         # At once: of the first alone the twin would find that its sensor fell silent since.
         one.post(*(each for minutes in range(-60, 1, 10) for each in readings(float(minutes), 0.5)))
         yield one
-
-
-@pytest.fixture
-def axe(pytestconfig: pytest.Config) -> Path:
-    """axe-core, which finds faults of accessibility."""
-    script = pytestconfig.rootpath / "web" / "node_modules" / "axe-core" / "axe.min.js"
-    if not script.is_file():
-        pytest.skip("needs axe-core, which the page's build fetches")
-    return script
 
 
 def address(live: Running, *scopes: str) -> str:
@@ -104,10 +95,10 @@ def test_a_load_beyond_its_limit_is_reported_acknowledged_journaled_and_looked_b
         watched.until("document.querySelector('.verdict').dataset.kind == 'warning'")
         assert "2 alarms" in page.locator(".verdict").inner_text()
         assert page.title().startswith("(2)")
-        toast = page.locator(".toast", has_text="bridle-10")
+        toast = page.locator(".toast", has_text="bridle 10")
         toast.get_by_role("button", name="Look").click()
 
-        listed = page.locator("li.alarm", has_text="bridle-10")
+        listed = page.locator("li.alarm", has_text="bridle 10")
         assert "active, not acknowledged" in listed.inner_text()
         listed.get_by_role("button", name="Acknowledge: ").click()
         page.get_by_label("Why").fill("Feed barge slackens the stern")
@@ -151,7 +142,7 @@ def test_alarms_of_one_cause_are_acknowledged_together(chromium: Path, live: Run
         page = watched.page
         page.goto(address(live, "read", "ack"))
         page.get_by_role("tab", name="Alarms").click()
-        page.get_by_role("button", name="Acknowledge all: High load on 2 bridles").click()
+        page.get_by_role("button", name="Acknowledge all: High load on 2 lines").click()
         page.get_by_label("Why").fill("Spring tide")
         page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
         page.get_by_role("dialog").wait_for(state="hidden")
@@ -176,11 +167,12 @@ def test_a_service_that_is_started_again_is_found_without_a_hand(
             watched.until("document.querySelector('.figure').innerText.includes('0.62')")
 
 
+@pytest.mark.parametrize("locale", ["en-GB", "nb-NO"])
 def test_a_full_cage_is_light_and_the_page_keeps_a_strict_policy(
-    chromium: Path, tmp_path: Path
+    locale: str, chromium: Path, tmp_path: Path
 ) -> None:
-    twin = stand_in_twin(spokes=32)
-    with running(tmp_path, twin=twin) as live, opened_browser(chromium) as watched:
+    twin, seen = stand_in_twin(spokes=32), opened_browser(chromium, locale=locale)
+    with running(tmp_path, twin=twin) as live, seen as watched:
         live.post(buoy(speed=0.5), depth(metres=14.2))
         answer = watched.page.goto(address(live, "read"))
         watched.until_drawn()
@@ -219,47 +211,3 @@ def test_a_farm_shows_its_cages_the_worst_first_and_leads_to_each(
             page.keyboard.press("f")
             page.locator(".tile[aria-current=true]", has_text="cove").wait_for(state="visible")
             assert not watched.complaints
-
-
-@pytest.mark.parametrize("scheme", ["dark", "light"])
-def test_axe_finds_no_serious_fault_in_any_state(
-    scheme: str, chromium: Path, live: Running, axe: Path
-) -> None:
-    with opened_browser(chromium, color_scheme=scheme, reduced_motion="reduce") as watched:
-        page, faults = watched.page, {}
-
-        def looked(state: str) -> None:
-            page.wait_for_timeout(200)
-            faults[state] = watched.faults(axe)
-
-        page.goto(live.address)
-        page.get_by_label("Token").wait_for(state="visible")
-        looked("no token")
-        page.goto(address(live, "read", "ack"))
-        page.reload()
-        watched.until_drawn()
-        looked("live")
-        page.locator(".rose .bar").nth(3).click()
-        page.get_by_role("region", name="Bridle 4").wait_for(state="visible")
-        looked("line")
-        page.keyboard.press("Escape")
-        page.keyboard.press("u")
-        looked("units")
-        page.keyboard.press("Escape")
-        excursion(live)
-        watched.until("document.querySelectorAll('.toast').length > 0")
-        looked("alarm")
-        for key, state in (("2", "charts"), ("3", "alarms"), ("4", "what if"), ("?", "help")):
-            page.keyboard.press(key)
-            looked(state)
-        page.keyboard.press("Escape")
-        page.keyboard.press("f")
-        looked("farm")
-        page.keyboard.press("Escape")
-        page.get_by_label("Time that is shown").focus()
-        page.keyboard.press("PageDown")
-        watched.until("document.body.dataset.mode == 'past'")
-        looked("past")
-        page.set_viewport_size({"width": 390, "height": 844})
-        looked("phone")
-        assert not {state: found for state, found in faults.items() if found}

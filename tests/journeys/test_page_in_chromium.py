@@ -282,3 +282,55 @@ def test_a_silent_buoy_is_reported_and_acknowledged_on_the_page(
         assert eventually(lambda: silence(live), lambda report: report["acknowledged"])[
             "acknowledged"
         ]
+
+
+def test_the_reader_chooses_a_language_which_the_browser_remembers(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, webgl=False, locale="nb-NO") as watched:
+        page = watched.page
+        page.goto(address(live))
+        watched.until("document.body.dataset.connection == 'live'")
+        assert page.evaluate("document.documentElement.lang") == "nb"
+        assert page.get_by_role("tab", name="Laster").is_visible()
+        assert "0,50" in page.locator(".figure").first.inner_text()
+        english = page.get_by_role("button", name="Help and keys")
+        assert not english.count()
+
+        page.get_by_role("combobox", name="Språk (language)").select_option(label="English")
+        english.wait_for(state="visible")
+        page.reload()
+        english.wait_for(state="visible")
+        watched.until("document.querySelector('.figure')?.innerText.includes('0.50')")
+        assert page.evaluate("document.documentElement.lang") == "en"
+        assert not watched.complaints
+
+
+def test_an_alarm_is_read_in_norwegian_and_one_of_a_newer_service_in_its_own_words(
+    chromium: Path, live: Running
+) -> None:
+    strange = {"key": "tilt.active", "title": "The collar tilts", "message": "By 9 degrees."}
+    with opened_browser(chromium, webgl=False, locale="nb-NO") as watched:
+
+        def with_a_strange_one(route: "Route") -> None:
+            answer = route.fetch()
+            alarms = answer.json()["alarms"]
+            known = next(one for one in alarms if one["id"] == "silent.buoy-1")
+            known |= {"active": True, "acknowledged": False, "key": "silent.active"}
+            known["values"] = {"source": "buoy-1", "value_s": 5400.0, "raise_at_s": 3600.0}
+            new = known | strange | {"id": "tilt.collar"}
+            route.fulfill(json={"alarms": [known, new]})
+
+        page = watched.page
+        page.route("**/alarms", with_a_strange_one)
+        page.goto(address(live))
+        watched.until("document.body.dataset.connection == 'live'")
+        page.keyboard.press("3")
+        known = page.locator("li.alarm", has_text="Bøye 1 er taus")
+        known.wait_for(state="visible")
+        words = known.inner_text().replace("\u00a0", " ")
+        assert "måling på 1,5 t; grensen er 60 min." in words
+        assert "aktiv, ikke kvittert" in words
+        assert "Sjekk strømforsyningen" in known.locator(".alarm-more").first.text_content()
+        new = page.locator("li.alarm", has_text=strange["title"])
+        assert strange["message"] in new.inner_text()

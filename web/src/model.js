@@ -4,6 +4,7 @@ import { possible } from "./bounds.js";
 import { latestOnly } from "./latest.js";
 import { connect } from "./link.js";
 import { cagePath, Refusal } from "./request.js";
+import { cageIn, stateIn } from "./service-words.js";
 import { begin, call, forget, renewal, resume, signIn, signOut } from "./session.js";
 import { text } from "./texts/index.js";
 import { readFrame } from "./wire.js";
@@ -93,7 +94,7 @@ export class Model {
 
   async #lookRound() {
     if (document.hidden && this.cages.length) return;
-    this.cages = (await call("GET", "cages")).cages;
+    this.cages = (await call("GET", "cages")).cages.map(cageIn);
     this.#notify("cages", this.cages);
   }
 
@@ -248,7 +249,7 @@ export function viewOf(frame, mode, { staleAfterS = STALE_UNKNOWN_S, speed, isLo
   const came = performance.now();
   return {
     ...frame,
-    state: possible(frame.state),
+    state: stateIn(possible(frame.state)),
     mode,
     /** Age of the input [s]; null where there is none. */
     get ageS() {

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 import en from "../src/texts/en.js";
-import { text } from "../src/texts/index.js";
+import { LANGUAGES, text } from "../src/texts/index.js";
 
 const SRC = new URL("../src/", import.meta.url);
 const PLURALS = new Set(["zero", "one", "two", "few", "many", "other"]);
@@ -72,16 +72,30 @@ test("words in a script are found wherever they stand", () => {
   ]) assert.equal(wordsIn(code).length, 1, code);
 });
 
-test("every language has texts of English alone, with the same placeholders", async () => {
+test("every language has every text of English, with the same placeholders", async () => {
   const names = (strings) => [...new Set(strings.flatMap((one) => one.match(/\{\w+\}/g) ?? []))].sort();
   const english = new Map(textsOf(en));
   for (const file of languages) {
     const { default: texts } = await import(new URL(file, SRC));
-    for (const [key, strings] of textsOf(texts)) {
-      assert.ok(english.has(key), `${file}: ${key} is not in English`);
-      assert.deepEqual(names(strings), names(english.get(key)), `${file}: ${key}`);
-    }
+    const own = new Map(textsOf(texts));
+    assert.deepEqual([...own.keys()].sort(), [...english.keys()].sort(), file);
+    for (const [key, strings] of own) assert.deepEqual(names(strings), names(english.get(key)), `${file}: ${key}`);
   }
+});
+
+test("no text of another language is left in English", async () => {
+  const english = new Map(textsOf(en));
+  const same = new Set(["line", "pause", "side", "alarm", "over", "min", "esc", "utc"]); // in both
+  const isEnglish = (words) => (words.replace(/\{\w+\}/g, "").match(/\p{L}{3,}/gu) ?? []).some((one) => !same.has(one.toLowerCase()));
+  for (const file of languages.filter((name) => !name.endsWith("en.js"))) {
+    const { default: texts } = await import(new URL(file, SRC));
+    const left = textsOf(texts).filter(([key, [words]]) => words === english.get(key)[0] && isEnglish(words));
+    assert.deepEqual(left, [], file);
+  }
+});
+
+test("every file of texts is a language that the reader can choose", () => {
+  assert.deepEqual(languages.map((name) => name.slice("texts/".length, -".js".length)).sort(), Object.keys(LANGUAGES).sort());
 });
 
 test("a text takes its values and the plural of its count", () => {

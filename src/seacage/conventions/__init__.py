@@ -23,6 +23,7 @@ from seacage.conventions._intake import (
 )
 from seacage.conventions._progress import Progress, no_progress
 from seacage.conventions._rows import Rows
+from seacage.conventions._sentences import SentenceValue, fill_sentence
 
 __all__ = [
     "GRAVITY",
@@ -42,10 +43,12 @@ __all__ = [
     "Result",
     "Rows",
     "SeacageError",
+    "SentenceValue",
     "check_file",
     "compass",
     "count_times",
     "duration_text",
+    "fill_sentence",
     "fold_degrees",
     "gravest",
     "has_answer",

@@ -169,6 +169,39 @@ def test_every_alarm_of_a_cage_is_described_in_words_active_or_not():
             assert "{" not in text.title + text.message
 
 
+@pytest.mark.parametrize(
+    ("alarm", "key", "values"),
+    [
+        (
+            Alarm(name="load.bridle-7", active=True, value=0.85, worst=0.9, detail="By the mean."),
+            "load.active",
+            {
+                "source": "bridle-7",
+                "value_share": 0.85,
+                "worst_share": 0.9,
+                "raise_at_share": 0.8,
+                "clear_at_share": 0.7,
+                "detail": "By the mean.",
+            },
+        ),
+        (
+            Alarm(name="silent.buoy-1", value=120.0),
+            "silent.calm",
+            {"source": "buoy-1", "value_s": 120.0},
+        ),
+        (Alarm(name="volume.net"), "volume.unknown", {}),
+        (
+            Alarm(name="disk.vault", active=True, value=1.0, detail="It is full."),
+            "fault.active",
+            {"source": "vault", "detail": "It is full."},
+        ),
+    ],
+)
+def test_a_text_has_the_key_and_the_values_that_another_language_needs(alarm, key, values):
+    text = alarm_text(alarm, AlarmPolicy.default(stand_in_twin().cage))
+    assert (text.key, text.values) == (key, values)
+
+
 def test_a_cause_is_shown_while_it_lasts_and_names_stand_as_the_sentence_needs_them():
     policy = AlarmPolicy.default()
     raised = Alarm(name="domain.input", active=True, value=1.0, detail="Extrapolating: …")

@@ -276,6 +276,13 @@ def loads_raised(water: dict[str, float], *readings: float) -> dict[str, AlarmIn
     return {one.alarm: one for one in found if one.alarm.startswith("load.")}
 
 
+def test_a_cage_without_any_reading_has_an_answer_without_rows():
+    answer = twin().models.answer(Metocean.from_table(np.zeros((0, 6))), [])
+    assert answer.valid.shape == (0,)
+    assert answer.line is not None
+    assert answer.line.mean.mean.shape == (0, 28)
+
+
 def test_an_alarm_compares_the_largest_load_that_is_expected():
     waves = {"hs_m": 1.5, "tp_s": 7.0, "wave_from_deg": 200.0}
     raised, line = loads_raised(waves), twin().predict(SEA).line

@@ -2,6 +2,7 @@
 
 import { Observable } from "../observable.js";
 import { cagePath } from "../request.js";
+import { alarmIn } from "../service-words.js";
 import { waits } from "./ranks.js";
 import { may } from "./rights.js";
 
@@ -45,7 +46,7 @@ export class AlarmDesk extends Observable {
     try {
       const { alarms } = await this.model.call("GET", this.path("alarms"));
       if (turn !== this.#turn) return;
-      Object.assign(this, { alarms, fault: null });
+      Object.assign(this, { alarms: alarms.map(alarmIn), fault: null });
     } catch (error) {
       if (turn !== this.#turn) return;
       this.fault = error.message;

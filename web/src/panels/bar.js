@@ -1,10 +1,12 @@
 // The top line: whose cage, whether all is well, how old the news is.
 
 import { make } from "../dom.js";
+import { word } from "../service-words.js";
 import { text } from "../texts/index.js";
 import { write } from "./dom.js";
 import { day, inputAge, span, time, zoneName } from "./format.js";
 import { icon } from "./icons.js";
+import { languageSwitch } from "./language-switch.js";
 import { rank, waits } from "./ranks.js";
 import { themeSwitch } from "./theme-switch.js";
 import { verdict } from "./verdict.js";
@@ -35,7 +37,7 @@ export class Bar {
     const time = make("div", { className: "bar-time" }, this.clock, this.speed, this.age);
     holder.append(
       make("div", { className: "bar-who" }, make("h1", {}, this.cages), this.origin), this.verdict,
-      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), units, help, new Who(model).button));
+      time, make("div", { className: "bar-tools" }, this.link, themeSwitch(), languageSwitch(), units, help, new Who(model).button));
     model.on("topology", () => this.topology());
     for (const name of ["live", "view", "connection", "age"]) model.on(name, () => this.show());
     // On a phone the tabs stop beneath the bar, however high that is.
@@ -51,7 +53,7 @@ export class Bar {
     if (!topology) return;
     write(this.cage, topology.cage);
     this.origin.hidden = topology.origin === "measured";
-    write(this.origin, topology.origin);
+    write(this.origin, word(topology.origin));
     this.origin.title = text("bar.origin");
     this.speed.hidden = topology.speed === 1;
     write(this.speed, text("bar.replay", { speed: topology.speed }));

@@ -1,5 +1,6 @@
 // A chart as a file: its curves as a table, or as a picture that says what it shows.
 
+import { word } from "../service-words.js";
 import { text } from "../texts/index.js";
 import { styled } from "../theme.js";
 import { unitName } from "../units.js";
@@ -42,7 +43,7 @@ export function pictureOf(plot, { title, unit, origin, cage, start, end }) {
     return pen.measureText(words).width / scale;
   };
   write(`${cage}, ${title} [${unit === "%" ? unit : unitName(unit)}]`, 10, 18, "--text", 600, 14);
-  write(text("charts.pictured", { origin, start: moment(start), end: moment(end) }), 10, 36, "--muted");
+  write(text("charts.pictured", { origin: word(origin), start: moment(start), end: moment(end) }), 10, 36, "--muted");
   let x = 10;
   for (const [name, colour] of Object.entries(MARKS)) {
     pen.fillStyle = styled(colour);

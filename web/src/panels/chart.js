@@ -8,7 +8,7 @@ import { styled } from "../theme.js";
 import { decimalsIn, shown, unitName, zone } from "../units.js";
 import { csvOf, pictureOf, save } from "./chart-file.js";
 import { write } from "./dom.js";
-import { day, fixed, half, known, moment, time } from "./format.js";
+import { dayOfYear, fixed, half, known, moment, time } from "./format.js";
 import { icon } from "./icons.js";
 import { joined, nearest, widened } from "./plotted.js";
 
@@ -199,7 +199,7 @@ const places = ([first, second]) =>
 function stamps(_, marks) {
   const daily = marks.length > 1 && marks[1] - marks[0] >= 86400;
   return marks.map((t, k) => {
-    const [date, clock] = [day(1000 * t).slice(5), time(1000 * t)];
+    const [date, clock] = [dayOfYear(1000 * t), time(1000 * t)];
     if (daily) return date;
     return k === 0 || clock === "00:00" ? `${date} ${clock}` : clock;
   });

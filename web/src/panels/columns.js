@@ -2,6 +2,7 @@
 // Times are in s since 1970 UTC, as uPlot has them.
 
 import { possibleSeries } from "../bounds.js";
+import { sentences } from "../service-words.js";
 
 const FAIL = 4; // of QARTOD
 const SAME_S = 0.002; // ages are rounded to a millisecond
@@ -10,7 +11,7 @@ const SAME_S = 0.002; // ages are rounded to a millisecond
 export function columnsOf(history) {
   const series = (table) => Object.fromEntries(Object.entries(table).map(([name, raw]) => {
     const one = possibleSeries(raw);
-    return [name, { unit: one.unit, level: one.level, reason: one.interval_reason ?? "",
+    return [name, { unit: one.unit, level: one.level, reason: sentences(one.interval_reason ?? ""),
       low: one.low_fidelity, mean: one.mean,
       lower: one.lower ?? one.mean.map(() => null), upper: one.upper ?? one.mean.map(() => null) }];
   }));

@@ -1,6 +1,7 @@
 // A cage among others: what it does in three seconds, in a tile.
 
 import { make } from "../dom.js";
+import { word } from "../service-words.js";
 import { text } from "../texts/index.js";
 import { bearing, inputAge, known, percent, withUnit } from "./format.js";
 import { icon } from "./icons.js";
@@ -50,7 +51,7 @@ export function tile(cage, { present, enter }) {
     : text("farm.noCurrent");
   const button = make("button", { type: "button", className: "tile", onclick: () => enter(cage.name) },
     make("span", { className: "tile-name" }, cage.name,
-      cage.origin === "measured" ? "" : make("span", { className: "badge origin" }, cage.origin)),
+      cage.origin === "measured" ? "" : make("span", { className: "badge origin" }, word(cage.origin))),
     make("span", { className: "tile-verdict" }, icon(shape), make("span", {},
       make("strong", {}, words), make("span", { className: "tile-detail" }, detail))),
     make("span", { className: "tile-load" },

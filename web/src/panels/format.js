@@ -1,11 +1,16 @@
 // Numbers and times as people read them: no number without a value behind it, no value
 // without its unit.
 
-import { text } from "../texts/index.js";
+import { has, language, text } from "../texts/index.js";
 import { decimalsIn, shown, unitName, zone } from "../units.js";
 
 export const DASH = "–";
 const [POINTS, NAMES] = [text("compass.points").split(" "), text("compass.names").split(" ")];
+
+const [MARK] = new Intl.NumberFormat(language).formatToParts(0.5).filter(({ type }) => type === "decimal");
+
+/** Digits with the decimal mark of the language in place of a point. */
+export const localDigits = (digits) => digits.replace(".", MARK.value);
 
 /** Whether there is a number. */
 export const known = (value) => Number.isFinite(value);
@@ -14,7 +19,7 @@ export const known = (value) => Number.isFinite(value);
 export function fixed(value, decimals = 1) {
   if (!known(value)) return DASH;
   const digits = value.toFixed(decimals);
-  return digits.replace("-", Number(digits) === 0 ? "" : "−");
+  return localDigits(digits.replace("-", Number(digits) === 0 ? "" : "−"));
 }
 
 /** A number that the service has in a unit, in the one that is shown, without its name. */
@@ -29,7 +34,7 @@ export const percent = (share) => (known(share) ? `${Math.round(100 * share)} %`
 
 /** Words in which no line ends between a number and its unit. */
 export const unbroken = (words) =>
-  words.replace(/(\d) (?=%|(?:kN|tf|m\/s|kn|m|ft|s|min|h|deg)\b)/g, "$1\u00a0");
+  words.replace(/(\d) (?=%|(?:kN|tf|m\/s|kn|m|ft|s|min|h|t|døgn|deg)\b)/g, "$1\u00a0");
 
 /**
  * An interval, as what follows the mean: half its width, never given as zero; its ends where
@@ -44,7 +49,7 @@ export function half(interval, unit, places = 1) {
     return `(${text("number.range", { lower: fixed(lower, decimals), upper: fixed(upper, decimals) })})`;
   }
   const digits = ((upper - lower) / 2).toFixed(decimals);
-  return Number(digits) ? `± ${digits}` : `± <${(10 ** -decimals).toFixed(decimals)}`;
+  return localDigits(Number(digits) ? `± ${digits}` : `± <${(10 ** -decimals).toFixed(decimals)}`);
 }
 
 /** Why the twin extrapolates, without the word that stands before it anyway. */
@@ -73,7 +78,7 @@ export function span(seconds) {
   if (!known(seconds)) return DASH;
   if (seconds < 90) return text("span.seconds", { count: Math.round(seconds) });
   if (seconds < 5400) return text("span.minutes", { count: Math.round(seconds / 60) });
-  if (seconds < 172800) return text("span.hours", { count: (seconds / 3600).toFixed(1).replace(".0", "") });
+  if (seconds < 172800) return text("span.hours", { count: localDigits((seconds / 3600).toFixed(1).replace(".0", "")) });
   return text("span.days", { count: Math.round(seconds / 86400) });
 }
 
@@ -85,18 +90,18 @@ const clocks = new Map();
 /** A formatter of a time zone, made once: that takes long. */
 function clock(options) {
   const key = JSON.stringify([zone(), options]);
-  if (!clocks.has(key)) clocks.set(key, new Intl.DateTimeFormat("sv", { timeZone: zone(), ...options }));
+  if (!clocks.has(key)) clocks.set(key, new Intl.DateTimeFormat(text("dates.locale"), { timeZone: zone(), ...options }));
   return clocks.get(key);
 }
 
-// The Swedish way to write a time is that of ISO 8601.
-const stamp = (t) => clock({ dateStyle: "short", timeStyle: "medium" }).format(t);
+/** The day by the clock that is shown; in English as in ISO 8601, which is the Swedish way. */
+export const day = (t) => clock({ year: "numeric", month: "2-digit", day: "2-digit" }).format(t);
 
-/** The day by the clock that is shown, as in ISO 8601. */
-export const day = (t) => stamp(t).slice(0, 10);
+/** The same without its year. */
+export const dayOfYear = (t) => day(t).replace(/^\d{4}\D|\D\d{4}$/, "");
 
 /** The time of day by the clock that is shown. */
-export const time = (t, seconds = false) => stamp(t).slice(11, seconds ? 19 : 16);
+export const time = (t, seconds = false) => clock({ timeStyle: seconds ? "medium" : "short" }).format(t);
 
 /** What the clock that is shown is called at a time, such as UTC or GMT+1. */
 export const zoneName = (t) => (zone() === "UTC" ? "UTC"
@@ -105,8 +110,11 @@ export const zoneName = (t) => (zone() === "UTC" ? "UTC"
 /** Day and time, with what the clock is called. */
 export const moment = (t) => `${day(t)} ${time(t)} ${zoneName(t)}`;
 
-/** A name as people write it: bridle-3 is "bridle 3". */
-export const plain = (name) => name.replaceAll("-", " ");
+/** A name as people write it: bridle-3 is "bridle 3", in the language's word for it. */
+export function plain(name) {
+  const [kind, ...rest] = name.split("-");
+  return [has(`name.${kind}`) ? text(`name.${kind}`) : kind, ...rest].join(" ");
+}
 
 /** The same with a large first letter, to begin a line. */
 export const titled = (name) => plain(name).replace(/^./, (letter) => letter.toUpperCase());

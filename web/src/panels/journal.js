@@ -1,7 +1,8 @@
 // The journal: who did what with which alarm, when and why.
 
 import { make } from "../dom.js";
-import { text } from "../texts/index.js";
+import { alarmName, sentences } from "../service-words.js";
+import { has, text } from "../texts/index.js";
 import { empty, tableHead } from "./dom.js";
 import { DASH, day, time, zoneName } from "./format.js";
 import { worth } from "./worth.js";
@@ -38,11 +39,12 @@ export async function linesOf(desk, past) {
 }
 
 function row({ alarm, action, t, value, who, why, quiet }) {
-  const number = worth(alarm, value);
-  const done = number ? text("journal.at", { action, number }) : action;
+  const [number, key] = [worth(alarm, value), action.replaceAll(" ", "-")];
+  const word = has(`journal.action.${key}`) ? text(`journal.action.${key}`) : action;
+  const done = number ? text("journal.at", { action: word, number }) : word;
   const line = make("tr", {}, make("td", { className: "when" }, `${day(Date.parse(t))} ${time(Date.parse(t))}`),
-    make("td", {}, alarm), make("td", {}, quiet ? text("journal.quietly", { action: done }) : done),
-    make("td", {}, [who, why].filter(Boolean).join(": ") || DASH));
+    make("td", {}, alarmName(alarm)), make("td", {}, quiet ? text("journal.quietly", { action: done }) : done),
+    make("td", {}, [who, sentences(why)].filter(Boolean).join(": ") || DASH));
   line.dataset.action = action;
   return line;
 }

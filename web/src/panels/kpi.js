@@ -1,6 +1,7 @@
 // How well the alarms do: too many, too long, too nervous alarms are not looked at.
 
 import { make } from "../dom.js";
+import { alarmName } from "../service-words.js";
 import { text } from "../texts/index.js";
 import { empty, tableHead } from "./dom.js";
 import { fixed, span } from "./format.js";
@@ -47,6 +48,6 @@ function table(rows) {
     make("caption", { className: "unseen" }, text("kpi.caption")),
     tableHead(["alarm", "raised", "longest", "state"].map((head) => text(`kpi.heads.${head}`))),
     make("tbody", {}, ...rows.map(({ name, raised, longestS, state }) =>
-      make("tr", {}, make("td", {}, name), make("td", { className: "number" }, String(raised)),
+      make("tr", {}, make("td", {}, alarmName(name)), make("td", { className: "number" }, String(raised)),
         make("td", { className: "number" }, span(longestS)), make("td", {}, state)))));
 }

@@ -59,7 +59,7 @@ export class Now {
     const silent = state?.silent ?? [];
     const words = !state ? ""
       : !state.valid ? text("now.comeBack", { reason: state.reason || text("now.noReading") })
-      : silent.length ? text("now.silent", { names: silent.join(", ") }) : "";
+      : silent.length ? text("now.silent", { names: silent.map(plain).join(", ") }) : "";
     this.why.hidden = !words;
     write(this.why, words);
   }

@@ -2,6 +2,7 @@
 
 import { Observable } from "../observable.js";
 import { cagePath } from "../request.js";
+import { sentences } from "../service-words.js";
 import { text } from "../texts/index.js";
 
 const FRESH_MS = 60_000;
@@ -42,7 +43,7 @@ export class Parting extends Observable {
     this.asking = true;
     this.notify();
     const found = await this.model.call("GET", cagePath(cageName, `what-if-parted${at}`))
-      .then((answer) => ({ answer, fault: "" }), (error) => ({ fault: error.message, absent: error.status === NOT_FOUND }));
+      .then((answer) => ({ answer: { ...answer, reason: sentences(answer.reason) }, fault: "" }), (error) => ({ fault: error.message, absent: error.status === NOT_FOUND }));
     if (turn !== this.#turn) return;
     Object.assign(this, { asking: false, cameAt: performance.now() }, found);
     this.notify();

@@ -2,7 +2,7 @@
 
 import { text } from "../texts/index.js";
 import { decimalsIn, shown } from "../units.js";
-import { withUnit } from "./format.js";
+import { localDigits, withUnit } from "./format.js";
 
 const ROOM = 1.25; // beyond what was learned, to see what extrapolating says
 const KINDS = [
@@ -62,5 +62,5 @@ export function change(now, then, unit, decimals) {
   const difference = shown(then - now, unit);
   const digits = Math.abs(difference).toFixed(decimalsIn(unit, decimals));
   if (Number(digits) === 0) return text("whatif.unchanged");
-  return `${difference > 0 ? "+" : "−"}${digits}`;
+  return `${difference > 0 ? "+" : "−"}${localDigits(digits)}`;
 }

@@ -4,6 +4,7 @@ import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { grouped, titleOf } from "./alarm-groups.js";
 import { closeButton } from "./dom.js";
+import { plain } from "./format.js";
 import { fresh } from "./fresh.js";
 import { icon } from "./icons.js";
 import { sourceOf } from "./load-rows.js";
@@ -40,7 +41,7 @@ export class Toasts {
   announce(group) {
     const worst = group.reduce((a, b) => (b.severity > a.severity ? b : a));
     const words = group.length === 1 ? worst.message
-      : group.map(({ id }) => sourceOf(id)).join(", ");
+      : group.map(({ id }) => plain(sourceOf(id))).join(", ");
     this.put(rank(worst.severity), titleOf(group), words, true);
   }
 

@@ -2,7 +2,7 @@
 
 import { text } from "../texts/index.js";
 import { grouped, titleOf } from "./alarm-groups.js";
-import { beyond, moment, plain, span, titled } from "./format.js";
+import { beyond, moment, plain, span } from "./format.js";
 import { rank, waits, worst } from "./ranks.js";
 
 /**
@@ -48,7 +48,7 @@ function ofLoads(state) {
 /** What keeps a cage without alarms from being well; null where nothing does. */
 export function concerned({ in_domain: within, reason, concerns = [], silent = [] }) {
   const [load] = concerns.filter(({ kind }) => kind === "load");
-  const messages = concerns.map(({ message }) => titled(message));
+  const messages = concerns.map(({ message }) => message);
   // A load at its limit has the colour of the alarm that it will raise.
   if (load) return result("warning", "warning", load.title, messages.join(" "));
   if (!within) return result("beyond", "beyond", text("verdict.beyond"), [beyond(reason), ...messages].join(" "));
@@ -67,7 +67,7 @@ function withoutInput(state) {
   const first = worst(alarms);
   const load = (state.concerns ?? []).find(({ kind }) => kind === "load");
   const kind = first ? rank(first.severity) : load ? "warning" : "none";
-  const measured = load ? [titled(load.message)] : [];
+  const measured = load ? [load.message] : [];
   return result(kind, "none", text("verdict.invalid"),
     [...measured, state.reason || text("verdict.unusable"), ...rest].join(" "));
 }

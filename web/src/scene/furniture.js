@@ -1,7 +1,7 @@
 // What lies over the drawing: names, compass and scale bar.
 
 import { draw, make } from "../dom.js";
-import { compass as compassPoint } from "../panels/format.js";
+import { compass as compassPoint, localDigits } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { shown, unitName } from "../units.js";
 
@@ -64,7 +64,7 @@ export function scaleBar() {
       const length = roundLength(perUnit);
       element.hidden = !Number.isFinite(length);
       bar.style.width = `${Math.round(length * perUnit)}px`;
-      words.textContent = `${length} ${unitName("m")}`;
+      words.textContent = `${localDigits(String(length))} ${unitName("m")}`;
     },
   };
 }

@@ -2,7 +2,7 @@
 
 import { knownLoad } from "../known-load.js";
 import { lineIn } from "../lines.js";
-import { DASH, amount, bearing, fixed, known, plain, withUnit } from "../panels/format.js";
+import { DASH, amount, bearing, fixed, known, localDigits, plain, withUnit } from "../panels/format.js";
 import { text } from "../texts/index.js";
 import { bearingOf } from "./geometry.js";
 
@@ -11,7 +11,7 @@ export function lasting(seconds) {
   if (seconds === null || seconds === undefined) return DASH;
   if (seconds < 90) return text("span.seconds", { count: Math.round(seconds) });
   if (seconds < 5400) return text("span.minutes", { count: Math.round(seconds / 60) });
-  return seconds < 172800 ? text("span.hours", { count: (seconds / 3600).toFixed(1) })
+  return seconds < 172800 ? text("span.hours", { count: localDigits((seconds / 3600).toFixed(1)) })
     : text("span.shortDays", { count: Math.round(seconds / 86400) });
 }
 

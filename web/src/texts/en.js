@@ -1,5 +1,7 @@
 // The page's texts in English, by key. `{name}` stands for a value; where a text is
 // { one, other }, the plural rules of the language choose by the value of `count`.
+// `alarm` and `concern` repeat the service's own texts, by its keys; `service` has other sentences
+// of it, which are known by how they read in English.
 
 export default {
   page: {
@@ -24,6 +26,7 @@ export default {
     names: "north north-east east south-east south south-west west north-west",
     unknown: "unknown",
   },
+  dates: { locale: "sv" }, // who writes days as this language does here: as ISO 8601
   number: {
     range: "{lower} to {upper}",
     notKnown: "not known",
@@ -94,13 +97,14 @@ export default {
     invalid: ", no valid input",
     origin: "How the sensors' numbers were made: this is no sea that was measured.",
     theme: { light: "Use the light colours", dark: "Use the dark colours" },
+    language: "Language",
   },
   units: {
     title: "Units and clock",
     kind: { force: "Force", speed: "Speed of the current", length: "Length and depth", clock: "Clock" },
     clock: { utc: "UTC", browser: "this device", site: "the site" },
     zone: "Times are shown in {zone}.",
-    about: "This browser remembers the choice. Words of the service, such as those of alarms, stay in SI and UTC.",
+    about: "This browser remembers the choice. Reasons that the service gives stay in SI and UTC.",
   },
   banner: {
     live: "Back to live",
@@ -316,7 +320,7 @@ export default {
   groups: {
     kind: {
       silent: "{count} streams without readings",
-      load: "High load on {count} bridles",
+      load: "High load on {count} lines",
       clock: "{count} clocks that disagree",
       irregular: "{count} sensors that read irregularly",
       bridle: "{count} bridles that may have parted",
@@ -376,6 +380,19 @@ export default {
     longer: "No alarm was raised or handled in this span. A longer span below looks further back.",
     caption: "Journal of alarms, newest first",
     heads: { when: "When, {zone}", alarm: "Alarm", what: "What", who: "Who and why" },
+    action: {
+      raised: "raised",
+      repeated: "repeated",
+      cleared: "cleared",
+      acknowledged: "acknowledged",
+      commented: "commented",
+      shelved: "shelved",
+      unshelved: "unshelved",
+      "out-of-service": "out of service",
+      "in-service": "in service",
+      reset: "reset",
+      replaced: "replaced",
+    },
     at: "{action} at {number}",
     quietly: "{action}, quietly",
   },
@@ -559,5 +576,153 @@ export default {
         means: "currents go towards, waves come from; degrees clockwise from true north. Times are UTC unless another clock is chosen.",
       },
     },
+  },
+  alarm: {
+    load: {
+      title: "High load on {source}",
+      active: "{Source} bears {value_share} of its capacity, {worst_share} at worst; the alarm is raised at {raise_at_share} and clears at {clear_at_share}.",
+      calm: "{Source} bears {value_share} of its capacity; the alarm is raised at {raise_at_share} and clears at {clear_at_share}.",
+      unknown: "The load is not known.",
+      advice: "Keep people and boats away from the line. Look at the forecast and at the neighbouring lines; slacken or relieve it if the load stays.",
+    },
+    volume: {
+      title: "The net is losing volume",
+      active: "The net has lost {value_share} of its volume in still water; the alarm is raised at {raise_at_share}.",
+      unknown: "The net's volume is not known.",
+      advice: "Stop feeding and watch the fish. The volume comes back as the current falls.",
+    },
+    silent: {
+      title: "{Source} is silent",
+      active: "{Source} has sent no sample for {value_s}; {raise_at_s} is the limit.",
+      calm: "{Source} sends samples, the last {value_s} ago.",
+      unknown: "{Source} has not sent a sample yet.",
+      advice: "Check its power, its radio and its clock.",
+    },
+    clock: {
+      title: "Wrong clock: {source}",
+      active: "",
+      calm: "Its clock agrees with the others again.",
+      advice: "Set the clock, and see that it is kept by NTP or GPS. What is shown follows the readings that are not ahead of the service's clock.",
+    },
+    input: {
+      title: "No valid input from {source}",
+      active: "The twin has no valid input, so it predicts nothing.",
+      calm: "There is valid input.",
+      advice: "Look at the buoy's readings; clean or replace its sensor if they go on failing their checks.",
+    },
+    domain: {
+      title: "Water outside the training domain",
+      active: "The water is outside the twin's training domain, so its intervals are wider and less reliable.",
+      calm: "The water is in the training domain.",
+      advice: "Rely on measured loads more than on computed ones. If such water is common, train the twin with a wider campaign.",
+    },
+    irregular: {
+      title: "{Source} reads irregularly",
+      active: "{Source} does not read as it should.",
+      calm: "{Source} reads as the twin and the other sensors expect.",
+      advice: "Compare it with a reading by hand. Calibrate or replace the sensor if it is wrong; inspect the cage near it if it is right.",
+    },
+    bridle: {
+      title: "{Source} has probably parted",
+      active: "{Source} seems to bear no load, and the other bridles of its corner bear its share.",
+      calm: "{Source} bears what is expected of it.",
+      advice: "Look at all lines of this corner at once, from a boat that keeps clear of it: that it is one of them is more certain than which. The others carry more until it is mended.",
+    },
+    net: {
+      title: "The net may be torn",
+      active: "The current pulls less at the net than before: loads fall, or depths grow, together.",
+      calm: "The current pulls at the net as expected.",
+      advice: "Send a camera or a diver to look for a hole. A net that was cleaned looks the same to these sensors: if it was, say so in the comment.",
+    },
+    history: {
+      title: "History is not being kept as it should",
+      active: "",
+      calm: "Nothing is wrong.",
+      advice: "Look at the disk and at the service's log.",
+    },
+    fault: {
+      title: "The service has a fault: {source}",
+      active: "",
+      calm: "Nothing is wrong.",
+      advice: "Look at the service's log.",
+    },
+  },
+  concern: {
+    load_predicted: {
+      title: "Load at its limit",
+      message: "{line} bears {load_share} of its capacity, predicted; {limit_share} is the limit.",
+    },
+    load_measured: {
+      title: "Load at its limit",
+      message: "{line} bears {load_share} of its capacity, measured by {shackle}; {limit_share} is the limit.",
+    },
+    volume: {
+      title: "Volume low",
+      message: "The net holds {volume_share} of its volume in still water; {limit_share} is the limit.",
+    },
+    fit: {
+      title: "Twin no longer fits",
+      message: "Readings of {sensors} miss the twin's intervals so often that these are widened {factor} times: the cage, or a sensor, has changed since training. Train the twin anew.",
+    },
+    measured_none: {
+      title: "Nothing measured",
+      message: "No sensor has given a valid reading within its timeout: all is predicted.",
+    },
+    measured_partly: {
+      title: "Partly measured",
+      message: "No valid reading within its timeout: {sensors}.",
+    },
+  },
+  service: {
+    noInterval: "No sensor has trained level 2: how far the simulation is from the sea is not known.",
+    noWaves: "Hs, wave direction and Tp are not all known; loads in waves need them.",
+    notTrained: "Outside the currents and waves that the loads of lines were learned in.",
+    anyWaves: "Hs or the wave direction is not known, so of the lines' loads the means alone are, over {origin}.",
+    anyTp: "Tp is not known; it is taken to be distributed as at the same Hs in {origin}.",
+    noPartedLines: "This twin has not learned what happens if a line parts. Run `seacage campaign run --parted-lines` with the plan and the seed of its campaign, and train it with --parted.",
+    notSent: "{buoy} has not sent {quantity} yet.",
+    flagged: "{buoy}: {quantity} is flagged {flag} ({name}); there is no valid input.",
+    old: "The last reading of {buoy} is {age} old; {limit} is the limit.",
+    extrapolatingWaves: "Extrapolating: level 1 was trained on currents up to {speed} m/s and waves up to {height} m; the spread is widened.",
+    extrapolating: "Extrapolating: level 1 was trained on currents up to {speed} m/s; the spread is widened.",
+    byLargest: "By the largest load that is expected in three hours of this sea, or that was read.",
+    byMean: "By the mean load, without what waves add to it.",
+    repeated: "It has repeated the same reading for {minutes} min.",
+    more: "It reads more than the twin and the other sensors let expect.",
+    less: "It reads less than the twin and the other sensors let expect.",
+    hole: "A large hole does that, and so does a cleaning.",
+    orParted: "Or {source} has parted: the sensors do not tell which.",
+    orTorn: "Or the net is torn: the sensors do not tell which.",
+    orIrregular: "Or {source} reads irregularly: the sensors do not tell which.",
+    clockAhead: "The last sample of {source} was {span} ahead of the service's clock; such samples wait until their time has come.",
+    clocksAhead: "All {count} streams are ahead of the service's clock, by {span} at least: it is likely to be behind.",
+    clockSetAhead: "The service's clock was set ahead by {span}, to {time} UTC.",
+    clockSetBack: "The service's clock was set back by {span}, to {time} UTC.",
+  },
+  name: {
+    bridle: "bridle",
+    frame: "frame",
+    anchor: "anchor",
+    buoy: "buoy",
+    line: "line",
+    tie: "tie",
+    shackle: "shackle",
+    depth: "depth",
+    service: "service",
+    store: "store",
+  },
+  word: {
+    measured: "measured",
+    computed: "computed",
+    "virtual-field": "virtual field",
+    suspect: "suspect",
+    fail: "fail",
+    missing: "missing",
+    "not-evaluated": "not evaluated",
+    current_speed_m_s: "the speed of the current",
+    current_to_deg: "the direction of the current",
+    hs_m: "the height of the waves",
+    tp_s: "the period of the waves",
+    wave_from_deg: "the direction of the waves",
   },
 };

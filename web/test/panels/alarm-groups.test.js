@@ -45,5 +45,5 @@ test("the verdict names the cause once and counts what else there is", () => {
   const state = { valid: true, in_domain: true, reason: "", age_s: 1, silent: [], alarms };
   const { headline, detail } = verdict({ connection: "live", live: { t: 0, stale: false, ageS: 1, state } });
   assert.equal(headline, "3 alarms");
-  assert.equal(detail, "High load on 2 bridles and 1 more.");
+  assert.equal(detail, "High load on 2 lines and 1 more.");
 });

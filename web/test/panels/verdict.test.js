@@ -35,7 +35,7 @@ test("a net that has lost volume is not well, and the limit is shown", () => {
 });
 
 test("a load at its alarm's limit has the alarm's colour before the alarm is raised", () => {
-  const load = concern("load", "Load at its limit", "bridle-8 bears 82 % of its capacity, measured by shackle-2.");
+  const load = concern("load", "Load at its limit", "Bridle 8 bears 82 % of its capacity, measured by shackle 2.");
   const { kind, headline, detail } = now({ concerns: [load, VOLUME] });
   assert.deepEqual([kind, headline], ["warning", "Load at its limit"]);
   assert.match(detail, /^Bridle 8 bears 82 %.*measured by shackle 2\. The net holds/);

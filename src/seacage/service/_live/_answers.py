@@ -75,14 +75,17 @@ def state_of(
 
 
 def loads_of(state: states.State) -> Iterator[tuple[float, str, str]]:
-    """Each bridle's loads as far as they are known: share of capacity [-], bridle and source."""
+    """Each bridle's loads as far as they are known: share of capacity [-], bridle and shackle.
+
+    The shackle is empty where the load is predicted.
+    """
     distrusted = {one.id for one in state.alarms if one.active}
     for one in state.bridles:
         if one.utilisation is not None:
-            yield one.utilisation, one.name, "predicted"
+            yield one.utilisation, one.name, ""
         by, share = one.measured_by, one.measured_utilisation
-        if share is not None and f"irregular.{by}" not in distrusted:
-            yield share, one.name, f"measured by {by}"
+        if by and share is not None and f"irregular.{by}" not in distrusted:
+            yield share, one.name, by
 
 
 def summary_of(name: str, state: states.State) -> schemas.CageSummary:
@@ -95,6 +98,8 @@ def summary_of(name: str, state: states.State) -> schemas.CageSummary:
         "waiting": len(waiting),
         "worst_severity": worst.severity if worst else None,
         "worst_title": worst.title if worst else None,
+        "worst_key": worst.key if worst else None,
+        "worst_values": worst.values if worst else {},
     }
     water = dict(state.water or dict.fromkeys(states.Water.model_fields))
     return schemas.CageSummary.model_validate({**dict(state), **water, **about})

@@ -2,8 +2,9 @@
 
 from collections.abc import Iterator
 from datetime import timedelta
-from typing import Literal
+from functools import cache
 
+from seacage.conventions import SentenceValue, fill_sentence, read_packaged_table
 from seacage.service._live._answers import loads_of, usable_value
 from seacage.service._schemas._state import Concern, State
 from seacage.twin import ADAPTATION_BLOCK, AlarmPolicy, TwinState
@@ -18,37 +19,34 @@ def concerns_of(
     """Say what of a cage is beyond its limits, or not measured; the gravest comes first."""
     limits = {one.name: policy.limit(f"load.{one.name}").raise_at for one in state.bridles}
     shares = [(share - limits[name], share, name, by) for share, name, by in loads_of(state)]
-    over, share, bridle, source = max(shares, default=(-1.0, 0.0, "", ""))
+    over, share, line, shackle = max(shares, default=(-1.0, 0.0, "", ""))
     if over >= 0.0:
-        words = f"{bridle} bears {_percent(share)} of its capacity, {source}"
-        yield _beyond("load", "Load at its limit", words, limits[bridle])
+        about = {"line": line, "load_share": share, "limit_share": limits[line]}
+        by_shackle = {"shackle": shackle} if shackle else {}
+        yield _concern("load_measured" if shackle else "load_predicted", **about, **by_shackle)
     if state.volume_fraction is not None and state.volume_fraction < least_volume:
-        words = f"The net holds {_percent(state.volume_fraction)} of its volume in still water"
-        yield _beyond("volume", "Volume low", words, least_volume)
+        yield _concern("volume", volume_share=state.volume_fraction, limit_share=least_volume)
     names = {one.name for one in state.sensors}
     factor = {name: one.factor for name, one in memory.tracked.items() if name in names}
     if wide := sorted(name for name in factor.keys() - memory.silent if factor[name] >= WIDEST):
-        words = (
-            f"Readings of {', '.join(wide)} miss the twin's intervals so often that these are "
-            f"widened {max(factor[name] for name in wide):.1f} times: the cage, or a sensor, has "
-            "changed since training. Train the twin anew."
-        )
-        yield Concern(kind="fit", title="Twin no longer fits", message=words)
+        yield _concern("fit", sensors=wide, factor=max(factor[name] for name in wide))
     measured = {name for name in names if _is_measured(memory, state, name, policy)}
     if not measured:
-        words = "No sensor has given a valid reading within its timeout: all is predicted."
-        yield Concern(kind="measured", title="Nothing measured", message=words)
+        yield _concern("measured_none")
     elif missing := sorted(memory.streams.keys() & names - measured):
-        words = f"No valid reading within its timeout: {', '.join(missing)}."
-        yield Concern(kind="measured", title="Partly measured", message=words)
+        yield _concern("measured_partly", sensors=missing)
 
 
-def _beyond(kind: Literal["load", "volume"], title: str, words: str, limit: float) -> Concern:
-    return Concern(kind=kind, title=title, message=f"{words}; {_percent(limit)} is the limit.")
+def _concern(key: str, **values: SentenceValue) -> Concern:
+    written = {name: fill_sentence(text, values) for name, text in _texts()[key].items()}
+    return Concern.model_validate(
+        {"kind": key.partition("_")[0], "key": key, "values": values, **written}
+    )
 
 
-def _percent(share: float) -> str:
-    return f"{100 * share:.0f} %"
+@cache
+def _texts() -> dict[str, dict[str, str]]:
+    return read_packaged_table("seacage.service._live", "concerns.toml")
 
 
 def _is_measured(memory: TwinState, state: State, sensor: str, policy: AlarmPolicy) -> bool:

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from seacage.service._schemas._alarms import LONGEST_WORDS
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest
-from seacage.service._schemas._state import Concern
+from seacage.service._schemas._state import Concern, Values
 
 
 class Position(AbstractAnswer):
@@ -90,6 +90,8 @@ class CageSummary(AbstractAnswer):
     waiting: int
     worst_severity: int | None
     worst_title: str | None
+    worst_key: str | None = None
+    worst_values: Values = Field(default={})
     concerns: list[Concern] = Field(default=[])
 
 

@@ -122,8 +122,17 @@ class Amended(AbstractAnswer):
     reason: str
 
 
+# Of a text, by key, with the unit in the key
+Values = dict[str, float | str | list[str]]
+
+
 class AlarmBrief(AbstractAnswer):
-    """An alarm that is active or not acknowledged; from severity 800 on it is critical."""
+    """An alarm that is active or not acknowledged; from severity 800 on it is critical.
+
+    Title and message are in English; ``key`` names the message, such as ``load.active``, and
+    ``values`` has what stands in title and message, so that a client can write its own. A
+    ``detail`` in ``values`` is a sentence that follows the message.
+    """
 
     id: str
     severity: Annotated[int, Field(ge=1, le=1000)]
@@ -133,14 +142,21 @@ class AlarmBrief(AbstractAnswer):
     acknowledged: bool
     shelved: bool
     since: datetime | None
+    key: str = ""
+    values: Values = Field(default={})
 
 
 class Concern(AbstractAnswer):
-    """Why a cage is not called well, though no alarm may be active: what, and by which limit."""
+    """Why a cage is not called well, though no alarm may be active: what, and by which limit.
+
+    ``key`` and ``values`` are as for an alarm, of title and message.
+    """
 
     kind: Literal["load", "volume", "fit", "measured"]
     title: str
     message: str
+    key: str = ""
+    values: Values = Field(default={})
 
 
 class State(AbstractAnswer):

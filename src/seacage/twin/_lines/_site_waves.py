@@ -40,6 +40,8 @@ class SiteWaves:
         A period that is not known has the distribution that it has in waves of the same height,
         as Tp / (5 √Hs); where height or direction are not known any of the site's waves may be.
         """
+        if not len(water):
+            return water, np.arange(0)
         table, (no_waves, no_tp) = water.table, self.gaps(water)
         parts = [one[None] for one in table]
         for row in np.flatnonzero(no_tp):

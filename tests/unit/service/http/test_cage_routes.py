@@ -319,11 +319,13 @@ def test_the_worst_alarm_that_is_not_shelved_stands_for_its_cage(idle: Running):
         "shelved": True,
         "since": None,
     }
-    other = alarm | {"id": "silent.depth-2", "severity": 300, "title": "quiet", "shelved": False}
+    text = {"title": "quiet", "key": "silent.active", "values": {"source": "depth-2"}}
+    other = alarm | text | {"id": "silent.depth-2", "severity": 300, "shelved": False}
     alarms = [AlarmBrief(**alarm), AlarmBrief(**other)]
     state = idle.cage.snapshot.state.model_copy(update={"alarms": alarms})
     summary = summary_of("ace", state)
     assert (summary.waiting, summary.worst_severity, summary.worst_title) == (1, 300, "quiet")
+    assert (summary.worst_key, summary.worst_values) == (text["key"], text["values"])
 
 
 def frame_of(answer):

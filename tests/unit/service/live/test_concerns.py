@@ -59,6 +59,9 @@ def test_a_measured_load_at_its_alarms_limit_is_a_concern_before_any_alarm_is_ra
     assert state.alarms == []
     text = "bridle-8 bears 80 % of its capacity, measured by shackle-2; 80 % is the limit."
     assert concerns["load"].message == text
+    assert concerns["load"].key == "load_measured"
+    values = {"line": "bridle-8", "shackle": "shackle-2", "load_share": 0.8, "limit_share": 0.8}
+    assert concerns["load"].values == values
     assert summary_of("ace", state).max_utilisation == pytest.approx(0.8)
 
 
@@ -127,6 +130,8 @@ def test_sensors_whose_intervals_are_twice_as_wide_as_trained_are_a_concern():
     assert concern.message.startswith("Readings of depth-1, shackle-4 miss the twin's intervals")
     assert "widened 2.3 times" in concern.message
     assert concern.message.endswith("Train the twin anew.")
+    assert concern.key == "fit"
+    assert concern.values == {"sensors": ["depth-1", "shackle-4"], "factor": 2.3}
 
 
 def test_a_sensor_that_is_silent_or_of_another_cage_says_nothing_of_the_fit():

@@ -42,7 +42,14 @@ def announcement(action=Action.RAISED, severity=700, **how):
         cage="ace",
         happened=AlarmEvent(alarm=alarm.name, action=action, t=NOON, **how),
         alarm=alarm,
-        text=AlarmText(title="Bridle 3 is loaded", message="…", advice="…", unit="1"),
+        text=AlarmText(
+            title="Bridle 3 is loaded",
+            message="…",
+            advice="…",
+            unit="1",
+            key="load.active",
+            values={"source": "bridle-3", "value_share": 0.9},
+        ),
         severity=severity,
     )
 
@@ -108,6 +115,7 @@ def test_a_hook_hears_what_is_raised_in_words_and_can_check_who_speaks():
         (body,) = received_by(Webhook(url=url, secret="s3"), received, announcement())
     assert (body["cage"], body["alarm"], body["action"]) == ("ace", "load.bridle-3", "raised")
     assert body["title"] == "Bridle 3 is loaded"
+    assert (body["key"], body["values"]["value_share"]) == ("load.active", 0.9)
     _, headers, raw = received[0]
     signature = hmac.new(b"s3", raw, hashlib.sha256).hexdigest()
     assert headers["X-Seacage-Signature"] == signature
