@@ -82,6 +82,8 @@ def describe(_app: Sphinx, what: str, name: str, it: object, _options: object, t
     text[:] = listed(text)
     if what == "module":
         text += contents(importlib.import_module(name))
+    elif what in {"attribute", "data", "property"}:
+        text.insert(0, "")  # else napoleon takes the words before a colon for a type
     elif has_written_fields(what, it) and isinstance(it, type) and (fields := [*field_lines(it)]):
         text += ["", ".. code-block:: python", "", *(f"   {line}" for line in fields), ""]
 
