@@ -1,5 +1,6 @@
 """The documentation site: `make site` builds it from the pages beside this file."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -7,6 +8,10 @@ from seacage.conventions import parse_toml
 
 DOCS = Path(__file__).parent
 sys.path[:0] = [str(DOCS / "_extensions"), str(DOCS.parent)]
+
+# The notebooks' matrices are small: threads that wait for one another only cost time.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 project = "seacage"
 author = "seacage developers"
@@ -35,7 +40,7 @@ myst_fence_as_directive = ["mermaid"]
 myst_heading_anchors = 4
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120
+nb_execution_timeout = 600  # of a cell; a machine may be busy
 nb_merge_streams = True
 
 autodoc_default_options = {
@@ -55,7 +60,7 @@ python_use_unqualified_type_names = True
 toc_object_entries = False
 
 html_theme = "furo"
-html_title = "seacage"
+html_title = f"seacage {release}"
 html_copy_source = False
 html_show_sphinx = False
 html_static_path = ["_static"]
