@@ -2,6 +2,7 @@
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -29,6 +30,11 @@ def arc(axes: Axes, degrees: float, radius: float, colour: str) -> None:
     arrow(axes, way[-2], way[-1], colour, 1.0)
 
 
+def write(axes: Axes, at: np.ndarray, text: str, **look: Any) -> None:
+    """Text at a place."""
+    axes.text(float(at[0]), float(at[1]), text, **look)
+
+
 def draw_plan(axes: Axes) -> None:
     """The cage from above, with north, the axes, a current and waves."""
     angle = np.linspace(0.0, 2.0 * np.pi, SPOKES + 1)
@@ -47,13 +53,13 @@ def draw_plan(axes: Axes) -> None:
         ([0, 2.2], "y, north, 0°", [0.08, 2.12]),
     ):
         arrow(axes, np.zeros(2), np.array(end), INK, 1.4)
-        axes.text(*at, name, color=INK)
+        write(axes, np.array(at), name, color=INK)
     to, come = (towards(np.array(1.0), np.array(one)) for one in (CURRENT_TO, WAVE_FROM))
     arrow(axes, 1.1 * to, 2.2 * to, LOW, 3.0)
-    axes.text(*(2.26 * to), f"current\nto {CURRENT_TO:g}°", color=LOW, va="center")
+    write(axes, 2.26 * to, f"current\nto {CURRENT_TO:g}°", color=LOW, va="center")
     arc(axes, CURRENT_TO, 1.75, LOW)
     arrow(axes, 2.2 * come, 1.1 * come, FIT, 3.0)
-    axes.text(*(2.26 * come), f"waves\nfrom {WAVE_FROM:g}°", color=FIT, va="center", ha="right")
+    write(axes, 2.26 * come, f"waves\nfrom {WAVE_FROM:g}°", color=FIT, va="center", ha="right")
     arc(axes, WAVE_FROM, 1.45, FIT)
     axes.set(xlim=(-2.9, 2.9), ylim=(-1.75, 2.4), aspect="equal")
     head(axes, "From above, north up")
