@@ -23,7 +23,7 @@ PAGE_SOURCES := web/index.html web/package-lock.json web/vite.config.js \
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help run page test test-times test-rest test-long test-all lint check lock bench bench-peers lock-peers sanitize \
-  validate always
+  site release validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -72,6 +72,13 @@ bench-peers: .venv-peers/.ready ## an environment with the learners that ours ar
 
 sanitize: .venv/.dev .venv/.project ## the kernel's tests and random INPUTS under sanitizers; needs gcc or clang
 	$(BIN)/python tools/sanitize.py --inputs $(INPUTS)
+
+site: .venv/.dev .venv/.project ## the documentation as pages for a browser, in dist/site
+	$(BIN)/python -m sphinx -W --keep-going -q -j auto -d dist/.doctrees docs dist/site
+	@echo "Open dist/site/index.html"
+
+release: .venv/.dev .venv/.project ## a release in commits, a tag and dist/ (VERSION=0.2.0); uploads nothing
+	$(BIN)/python -m tools.release $(VERSION)
 
 validate: .venv/.project ## our physics against published numbers, as docs/validation.md
 	OMP_NUM_THREADS=1 $(BIN)/python -m validation --workers $(WORKERS)

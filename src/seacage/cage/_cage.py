@@ -38,9 +38,8 @@ class DepthSensor:
 class Cage(TomlFile):
     """A cage as its file describes it, with the node graph derived from it.
 
-    ``Cage.named("ace")`` is the reference cage, ``Cage.read("mine.toml")`` one's own;
-    ``.write`` makes a file to start from. Positions are x east, y north, z up [m] with
-    z = 0 at still water.
+    ``Cage.named("ace")`` is the reference cage, ``Cage.read("mine.toml")`` one's own; ``.write``
+    makes a file to start from. Positions are x east, y north, z up [m] with z = 0 at still water.
     """
 
     name: str = field(metadata={"unit": "", "meaning": "the name of the cage"})

@@ -66,8 +66,7 @@ def edges(rings: int, spokes: int) -> Int[np.ndarray, "edge 2"]:
 def panels(rings: int, spokes: int) -> Int[np.ndarray, "panel 4"]:
     """Corners of each panel, counter-clockwise seen from outside the net.
 
-    Quadrilaterals ring by ring, then the triangles at the tip, which repeat their last
-    node.
+    Quadrilaterals ring by ring, then the triangles at the tip, which repeat their last node.
     """
     node = np.arange(rings * spokes).reshape(rings, spokes)
     beside = np.roll(node, -1, axis=1)

@@ -48,8 +48,7 @@ class Simulator:
     mooring
         "catenary": frame ropes, buoys and anchor lines; or "springs" under the frame's corners.
     ramp, spin_up
-        Time over which the waves grow, and time before the statistics begin, the ramp
-        included [s].
+        Time over which the waves grow, and time before the statistics begin, the ramp included [s].
     time_step
         [s].
     quantile_levels

@@ -28,8 +28,7 @@ def map_tasks(
 ) -> Generator[tuple[Task, Answer], None, None]:
     """Tasks with their answers, in the order in which they end.
 
-    One worker, or one task, means no other process. Closing the iterator drops what has
-    not begun.
+    One worker, or one task, means no other process. Closing the iterator drops what has not begun.
 
     ``work``: a function of a module: it travels to the workers by its name. ``tasks``: what to do.
     ``workers``: processes at most; None for one per available core. ``progress``: called now and

@@ -192,8 +192,7 @@ class Plan:
         """The sea states of a CSV file, one a row.
 
         Its columns are current_speed_m_s and current_to_deg, and if it likes hs_m, tp_s and
-        wave_from_deg. An empty hs_m or wave_from_deg counts as 0, an empty tp_s as
-        5 sqrt(Hs).
+        wave_from_deg. An empty hs_m or wave_from_deg counts as 0, an empty tp_s as 5 sqrt(Hs).
         """
         path, seas = Path(path), read_sea_states(Path(path))
         return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)

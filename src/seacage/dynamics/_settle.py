@@ -73,17 +73,15 @@ def settle(
 ) -> Response:
     """Equilibrium of the moored cage in each sea's current.
 
-    Net loads by a screen law with a wake on the down-stream half, tension-only netting
-    with its weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on a
-    frame with buoys and anchor lines or on elastic frame corners. Netting above z = 0 is dry.
-    Left out: the change of the current with depth, and the motion of the water and the cage in
-    waves, which ``simulate`` has. A case's numbers do not depend on the cases beside it nor on
-    ``workers``.
+    Net loads by a screen law with a wake on the down-stream half, tension-only netting with its
+    weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on a frame with buoys
+    and anchor lines or on elastic frame corners. Netting above z = 0 is dry. Left out: the change
+    of the current with depth, and the motion of the water and the cage in waves, which ``simulate``
+    has. A case's numbers do not depend on the cases beside it nor on ``workers``.
 
-    A cage may have several equilibria. They are sought from so many first shapes: the net
-    swung as the load asks, hanging straight, nearly flat, then swung aside. The first found
-    that is not proved unstable is the answer; ``Response`` says how many there are and how
-    far apart.
+    A cage may have several equilibria. They are sought from so many first shapes: the net swung as
+    the load asks, hanging straight, nearly flat, then swung aside. The first found that is not
+    proved unstable is the answer; ``Response`` says how many there are and how far apart.
 
     Parameters
     ----------

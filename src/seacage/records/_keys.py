@@ -59,6 +59,7 @@ NO_MEAN_PERIOD = (
     "This is a mean period, and tp_s is the peak period, some 1.2 to 1.4 times as long. Give the "
     "peak period, or leave the period out: a twin takes Tp as it is distributed at the same Hs."
 )
+"""Why a mean wave period is not taken for the peak period, and what to do."""
 _MEAN_PERIOD = re.compile(
     r"(apd|mwp|t_?[zae]|t_?av|v?t_?m_?-?[012]{0,3}|t0?[12]|vtza)(_s)?"
     r"|.*(mean|average|zero|energy|upcross).*period.*|.*period.*(mean|average|zero|first|second).*",

@@ -27,6 +27,7 @@ Fitted = (
     | FittedShapeGP
     | Table
 )
+"""Any fitted model that can be saved."""
 
 
 def encode(fitted: Fitted) -> tuple[Settings, Arrays]:

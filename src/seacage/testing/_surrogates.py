@@ -53,7 +53,7 @@ def check_surrogate(
     Parameters
     ----------
     make_fitted
-        Fits the surrogate to x (row, 2) and y (row, *output_shape), from a seed.
+        Fits the surrogate to x (row, 2) and y, one row each, from a seed.
     output_shape
         Of one case: () for a number, (5,) for five, (nodes, 3) for a shape.
     extrapolates

@@ -50,3 +50,4 @@ class StreamBack:
 
 
 Event = Answered | Flagged | StreamSilent | StreamBack
+"""An event of a twin's step."""

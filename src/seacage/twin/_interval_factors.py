@@ -20,6 +20,7 @@ from seacage.twin._pairs import reading_of
 BLOCK_US = 600_000_000
 
 ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
+"""Length of a block of readings that the intervals are adapted to at once."""
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 # Mean and standard deviation of a sensor's reading, as trained [N] or [m]

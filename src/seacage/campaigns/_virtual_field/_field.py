@@ -71,10 +71,9 @@ def virtual_field(
     """Sensors on a cage that differs from its drawing, in a current that differs from the buoy's.
 
     Simulated, the cage moves in waves and in a current that changes with time and depth, under
-    growth. Settled, it answers at once: its equilibria are interpolated on a grid of currents
-    and growths, with the error on the record's notes; waves, depth profile and inertia are left
-    out, of a shear its mean over the net's depth is kept, and the buoy's stream passes through as
-    it came.
+    growth. Settled, it answers at once: its equilibria are interpolated on a grid of currents and
+    growths, with the error on the record's notes; waves, depth profile and inertia are left out, of
+    a shear its mean over the net's depth is kept, and the buoy's stream passes through as it came.
 
     Parameters
     ----------

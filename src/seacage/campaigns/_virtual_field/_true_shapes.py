@@ -53,11 +53,10 @@ def true_shapes(
 ) -> TrueShapes:
     """Settle the true cage at times of several generated records.
 
-    Each seed draws a record, turned to a direction of its own, the buoy's errors and the
-    eddies that it does not see, and the cage from its ranges. The times are spread evenly
-    over the speeds, for a record's own are mostly slow. Left out, as in every settled field:
-    waves, the current's profile, and that a cage takes time to follow. Growth is rounded to a
-    quarter of the whole.
+    Each seed draws a record, turned to a direction of its own, the buoy's errors and the eddies
+    that it does not see, and the cage from its ranges. The times are spread evenly over the speeds,
+    for a record's own are mostly slow. Left out, as in every settled field: waves, the current's
+    profile, and that a cage takes time to follow. Growth is rounded to a quarter of the whole.
 
     Parameters
     ----------

@@ -14,6 +14,7 @@ from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._parts._structure import assemble_structure
 
 Mooring = Literal["catenary", "springs"]
+"""The whole mooring, or springs under the corners of its frame."""
 
 SPRINGS = (
     "springs under the corners hold the frame nine times stiffer than its anchor lines; they are "

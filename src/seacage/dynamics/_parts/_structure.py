@@ -34,13 +34,12 @@ MOST_SOLIDITY = 0.9  # beyond it a net is a wall, and no screen law is right [-]
 def assemble_structure(structure: Structure) -> Assembly:
     """Put a structure together.
 
-    Pipes float as boxes of their width and volume, centred on their nodes, and follow the
-    surface; ropes count as always under water, and so do nets but a roof at the water line,
-    which counts as always dry. Ties and lines are lumped into their segments' ends, and have
-    the same added mass in all directions, which a ring has across itself alone. ``bridles``
-    are the first bars of the lines, in the order of ``structure.bridle_names``; of the ropes of
-    ties, which follow them in ``lines``, it is the uppermost bar that is reported. Friction on
-    the sea bed is left out.
+    Pipes float as boxes of their width and volume, centred on their nodes, and follow the surface;
+    ropes count as always under water, and so do nets but a roof at the water line, which counts as
+    always dry. Ties and lines are lumped into their segments' ends, and have the same added mass in
+    all directions, which a ring has across itself alone. ``bridles`` are the first bars of the
+    lines, in the order of ``structure.bridle_names``; of the ropes of ties, which follow them in
+    ``lines``, it is the uppermost bar that is reported. Friction on the sea bed is left out.
 
     Raises InputError: a structure whose pipes and buoys cannot carry its rings, nets and ties, one
     that is built with a tie or line far too short, and one with a node that weighs nothing.

@@ -86,11 +86,10 @@ def bend_force(bends: assemblies.Bends, position: Nodal) -> Nodal:
     vector of a discrete elastic rod that is straight when unloaded, free to twist. On a
     ring it gives the classical in-plane (n²−1)² EI/R⁴ and out-of-plane n²(n²−1) EI/R⁴.
 
-    Pipes held together in the horizontal plane are stiffer there: ½ (ΔEI/l)(κ − κ0)² comes on
-    top, with κ the vertical part of that curvature vector (the curvature binormal), and κ0 that
-    of the ring as it was cut. It stands for the curvature in the plane of the pipes, whose
-    twist is not known; as the pair rests at κ0, a ring that a wave tilts by an angle bends
-    only by its square.
+    Pipes held together in the horizontal plane are stiffer there: ½ (ΔEI/l)(κ − κ0)² comes on top,
+    with κ the vertical part of that curvature vector (the curvature binormal), and κ0 that of the
+    ring as it was cut. It stands for the curvature in the plane of the pipes, whose twist is not
+    known; as the pair rests at κ0, a ring that a wave tilts by an angle bends only by its square.
 
     Source: Bergou et al. (2008), discrete elastic rods; Love (1927), section 293.
     """
@@ -138,12 +137,11 @@ def wet_share(
 ) -> Float[np.ndarray, "#case panel"]:
     """Share of each panel that the water loads, from its corners' heights over the surface [-].
 
-    One less what the corners stand out over the sum of their distances from the surface: exact
-    for a rectangle with two level edges. A panel that lies level comes out within a tenth of the
-    root of its area, for else it would fall dry at once. The surface is at ``elevation`` at each
-    node [m]; still water at 0. Left out: netting that falls dry keeps its submerged weight (0.6
-    N/m2 of the reference net, for 5.6 in air) and is pushed by the waves' acceleration as if it
-    were wet.
+    One less what the corners stand out over the sum of their distances from the surface: exact for
+    a rectangle with two level edges. A panel that lies level comes out within a tenth of the root
+    of its area, for else it would fall dry at once. The surface is at ``elevation`` at each node
+    [m]; still water at 0. Left out: netting that falls dry keeps its submerged weight (0.6 N/m2 of
+    the reference net, for 5.6 in air) and is pushed by the waves' acceleration as if it were wet.
     """
     surface = 0.0 if elevation is None else elevation[:, panels.corners]
     height = position[:, panels.corners, 2] - surface

@@ -12,8 +12,11 @@ from seacage.conventions import WATER_VISCOSITY, InputError
 CasePanel = Float[np.ndarray, "case panel"]
 PerCase = Float[np.ndarray, " case"]
 Law = Literal["aarsnes", "loland", "kristiansen-faltinsen"]
+"""Name of a screen law."""
 LAWS: tuple[Law, ...] = ("aarsnes", "loland", "kristiansen-faltinsen")
+"""The screen laws."""
 MovingLaw = Literal["aarsnes", "loland", "kristiansen-faltinsen", "morison"]
+"""Name of a law of a net that moves."""
 MOVING_LAWS: tuple[MovingLaw, ...] = (*LAWS, "morison")
 """Laws of a net that moves: "morison" loads it twine by twine."""
 

@@ -39,6 +39,7 @@ PerN = Float[np.ndarray, " n"]
 PerRow = Float[np.ndarray, " row"]
 RowFeature = Float[np.ndarray, "row feature"]
 ModelName = Literal["nargp", "nargp-published", "ar1", "regression", "alone"]
+"""Name of the kernel of an upper level."""
 # Step of central differences, in spreads of a feature; their error falls with its square
 DIFFERENCE = 1e-4
 SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature

@@ -21,6 +21,7 @@ NO_PARTED_LINES = (
     "This twin has not learned what happens if a line parts. Run `seacage campaign run "
     "--parted-lines` with the plan and the seed of its campaign, and train it with --parted."
 )
+"""Why a twin has no answer about a parted line, and what to do."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

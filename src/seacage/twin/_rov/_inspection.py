@@ -15,7 +15,9 @@ PerWaypoint = Float[np.ndarray, " waypoint"]
 RingSpoke3 = Float[np.ndarray, "ring spoke 3"]
 
 Side = Literal["inside", "outside"]
+"""Side of the net that an inspection swims on."""
 Pattern = Literal["rows", "spiral"]
+"""Way of an inspection along the net."""
 MOST_WAYPOINTS = 10_000  # waypoints at most
 _ROUNDS = 8  # of moving waypoints to their stand-off; in a corner of the net each helps a little
 _TOO_NEAR = 0.9  # least distance over the stand-off; a waypoint with less is left out
