@@ -73,6 +73,7 @@ class NewUser:
             if found := re.match(r"Page +(http://\S+?)/#token=(\S+)", line):
                 address, token = found.groups()
                 headers = {"Authorization": f"Bearer {token}"}
+                self.page.close()
                 self.page = httpx.Client(base_url=address, headers=headers)
             if line.startswith("Stop"):
                 wait_for(self._ask_ready, seconds=60)
@@ -113,6 +114,7 @@ def user(tmp_path, wheel):
     one = NewUser(tmp_path / "home", wheel)
     yield one
     one.stop()
+    one.page.close()
 
 
 def until_valid(user: NewUser) -> dict:
@@ -154,7 +156,8 @@ def look_elsewhere(user: NewUser, seen: dict) -> None:
     assert until_valid(user)["twin"] == seen["second"]
     lines = user.page.get("/api/v1/cages/mine/journal").json()["lines"]
     assert [one["why"] for one in lines if one["action"] == "replaced"] == ["36 cases"]
-    assert user.page.get("/page").status_code == 200
+    page = user.page.get("/", follow_redirects=True)
+    assert (page.status_code, "seacage" in page.text) == (200, True)
 
 
 LOOKS = {

@@ -136,6 +136,35 @@ def test_a_load_beyond_its_limit_is_reported_acknowledged_journaled_and_looked_b
         assert not watched.foreign_requests(live.address)
 
 
+def test_work_on_the_cage_is_written_down_and_stands_in_the_journal(
+    chromium: Path, live: Running
+) -> None:
+    with opened_browser(chromium, webgl=False) as watched:
+        page = watched.page
+        page.goto(address(live, "read", "ack"))
+        well(watched)
+        page.keyboard.press("5")
+        page.get_by_role("tab", name="Alarms").click()
+        page.get_by_role("tab", name="Journal").click()
+        page.get_by_role("button", name="Write down work").click()
+        page.get_by_label("Sensor", exact=True).wait_for(state="hidden")
+        page.get_by_label("What was done").select_option("sensor moved")
+        page.get_by_label("Sensor", exact=True).select_option("depth-2")
+        page.get_by_label("Why").fill("Hung on spoke 5")
+        page.get_by_label("When").fill("2010-01-01T12:00")
+        record = page.get_by_role("dialog").get_by_role("button", name="Write down")
+        record.click()
+        watched.until("document.body.innerText.includes('is not within the 30 days until now')")
+        watched.complaints.clear()  # the browser's own line about the refusal
+        page.get_by_label("When").fill("")
+        record.click()
+        line = page.locator(".journal tr[data-action='sensor moved']")
+        line.wait_for(state="visible")
+        assert "Night shift: Hung on spoke 5" in line.inner_text()
+        assert "depth" in line.inner_text().lower()
+        assert not watched.complaints
+
+
 def test_alarms_of_one_cause_are_acknowledged_together(chromium: Path, live: Running) -> None:
     excursion(live)
     with opened_browser(chromium, webgl=False) as watched:

@@ -73,10 +73,20 @@ export class AlarmDesk extends Observable {
     }
   }
 
-  /** Post an action; remember where this token may not. */
-  async #post(id, action, body) {
+  /** Write down work on the cage; rejects with a Refusal that says why not. */
+  async record(change) {
+    await this.#send("journal", change);
+    this.notify();
+  }
+
+  #post(id, action, body) {
+    return this.#send(`alarms/${encodeURIComponent(id)}/${action}`, body);
+  }
+
+  /** Send what a person does; remember where this token may not. */
+  async #send(path, body) {
     try {
-      await this.model.call("POST", this.path(`alarms/${encodeURIComponent(id)}/${action}`), body);
+      await this.model.call("POST", this.path(path), body);
     } catch (error) {
       if (error.status === FORBIDDEN) {
         this.denied = true;

@@ -3,6 +3,7 @@
 import { make } from "../dom.js";
 import { alarmName, sentences } from "../service-words.js";
 import { has, text } from "../texts/index.js";
+import { ChangeDialog } from "./change-dialog.js";
 import { empty, tableHead } from "./dom.js";
 import { DASH, day, time, zoneName } from "./format.js";
 import { worth } from "./worth.js";
@@ -12,11 +13,16 @@ const SHOWN = 500; // lines; more nobody reads, and the browser would feel them
 
 export class Journal {
   constructor(holder, model, desk, past) {
-    Object.assign(this, { model, desk, past, holder, turn: 0 });
+    const dialog = new ChangeDialog(desk);
+    this.write = make("button", { type: "button", className: "button", onclick: () => dialog.ask() }, text("change.button"));
+    const lines = make("div");
+    holder.append(make("p", { className: "journal-write" }, this.write), lines);
+    Object.assign(this, { model, desk, past, holder: lines, turn: 0 });
   }
 
   /** Ask for the lines of the span that is looked back over, newest first, and show them. */
   async show() {
+    this.write.hidden = this.desk.denied;
     const turn = ++this.turn;
     const words = await linesOf(this.desk, this.past).catch((error) => error);
     if (turn !== this.turn) return;
