@@ -71,6 +71,8 @@ class Service:
         self.gate = Gate(tokens, metrics=metrics, limits=limits, audit=audit, site=site)
         metrics.damaged.set_function(lambda: float(store.damage.count))
         metrics.unverified.set_function(lambda: float(store.damage.unverified))
+        metrics.ready.set_function(lambda: float(self.trouble() is None))
+        metrics.watch(cages)
         self._feeds = feeds
         self._tasks: list[asyncio.Task[None]] = []
 

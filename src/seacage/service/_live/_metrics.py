@@ -1,11 +1,13 @@
 """What Prometheus is told about the service."""
 
 from collections import Counter as Counted
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from functools import partial
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Metric, generate_latest
 from prometheus_client.registry import Collector
+
+from seacage.service._live._cage_gauges import CageGauges, Stepped
 
 _STEP_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5)
 _WAIT_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
@@ -34,10 +36,6 @@ class Metrics:
             "seacage_notices",
             "What the twin noticed: values flagged, streams silent and back.",
             ("cage", "kind"),
-        )
-        self.valid = gauge("seacage_valid", "1 while the twin answers with numbers.", ("cage",))
-        self.input_age = gauge(
-            "seacage_input_age_seconds", "Age of the reading that the answer rests on.", ("cage",)
         )
         self.clients = gauge("seacage_live_clients", "Open live connections.", ("cage",))
         self.dropped = counter(
@@ -89,10 +87,17 @@ class Metrics:
             "1 while a backlog drains, and the newest of each stream goes before it.",
             ("broker",),
         )
+        self.ready = gauge(
+            "seacage_ready", "1 while samples are kept and every cage is stepped, as in /readyz."
+        )
         self.quarantined = gauge(
             "seacage_quarantined",
             "Messages and lines that could not be read, set aside since the start.",
         )
+
+    def watch(self, cages: Mapping[str, Stepped]) -> None:
+        """Read the states of cages whenever the metrics are."""
+        self._registry.register(CageGauges(cages))
 
     def count_alarms(self, cage: str, severities: Iterable[int]) -> None:
         """Say how many alarms of each severity there are."""
