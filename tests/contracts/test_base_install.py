@@ -11,6 +11,7 @@ from seacage.cage import Cage
 EXTRA = {
     "xarray", "pandas", "zarr", "h5netcdf", "h5py", "dask", "distributed", "threadpoolctl",
     "matplotlib", "jinja2", "jax", "optax", "psycopg", "pyarrow", "rosbags",
+    "asyncua",
 }  # fmt: skip
 BARE = f"""
 import sys
