@@ -53,6 +53,8 @@ class MqttSection(_Section):
     group: Name | None = None
     # How often a cage's state is published [s]
     state_every_s: float = Field(default=10.0, ge=1.0, le=3600.0)
+    # Where Home Assistant looks for devices, ``homeassistant``; none are announced if left out
+    home_assistant: Name | None = None
 
 
 class TailSection(_Section):

@@ -1,13 +1,11 @@
 """What Prometheus is told about the service."""
 
 from collections import Counter as Counted
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable
 from functools import partial
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, Metric, generate_latest
 from prometheus_client.registry import Collector
-
-from seacage.service._live._cage_gauges import CageGauges, Stepped
 
 _STEP_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5)
 _WAIT_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0)
@@ -15,10 +13,10 @@ _WORDS = {800: "critical", 500: "warning", 1: "note"}
 
 
 class Metrics:
-    """Counters and gauges of one service, in a registry of their own."""
+    """Counters and gauges of one service, in a registry of their own that takes others too."""
 
     def __init__(self) -> None:
-        registry = self._registry = CollectorRegistry()
+        registry = self.registry = CollectorRegistry()
         counter = partial(Counter, registry=registry)
         gauge = partial(Gauge, registry=registry)
         histogram = partial(Histogram, registry=registry)
@@ -87,17 +85,11 @@ class Metrics:
             "1 while a backlog drains, and the newest of each stream goes before it.",
             ("broker",),
         )
-        self.ready = gauge(
-            "seacage_ready", "1 while samples are kept and every cage is stepped, as in /readyz."
-        )
+        self.ready = gauge("seacage_ready", "1 while /readyz says that the service is ready.")
         self.quarantined = gauge(
             "seacage_quarantined",
             "Messages and lines that could not be read, set aside since the start.",
         )
-
-    def watch(self, cages: Mapping[str, Stepped]) -> None:
-        """Read the states of cages whenever the metrics are."""
-        self._registry.register(CageGauges(cages))
 
     def count_alarms(self, cage: str, severities: Iterable[int]) -> None:
         """Say how many alarms of each severity there are."""
@@ -110,7 +102,7 @@ class Metrics:
 
     def text(self, cages: Collection[str] | None = None) -> bytes:
         """Everything in Prometheus' text format, or only what is about some cages."""
-        return generate_latest(self._registry if cages is None else _Part(self._registry, cages))
+        return generate_latest(self.registry if cages is None else _Part(self.registry, cages))
 
 
 class _Part(Collector):

@@ -2,39 +2,27 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import reduce
+from operator import attrgetter
 from typing import NamedTuple
 
 from seacage.conventions import read_packaged_table
 from seacage.service._schemas._state import State
 
+_TABLE = read_packaged_table("seacage.service._schemas", "quantities.toml")
+
 
 class Unit(NamedTuple):
-    """A unit: its symbol, its name in Prometheus and the factor to it, and UNECE's code for it."""
+    """A unit, and what other systems call it; ``quantities.toml`` has them."""
 
     symbol: str
     metric: str
     factor: float
     unece: str
+    device_class: str
 
 
-SHARE = Unit("1", "ratio", 1.0, "C62")
-# By the end of a name, the longer before those that end alike
-_UNITS = {
-    "_fraction": SHARE,
-    "_m_s": Unit("m/s", "meters_per_second", 1.0, "MTS"),
-    "_deg": Unit("°", "degrees", 1.0, "DD"),
-    "_kn": Unit("kN", "newtons", 1e3, "B47"),
-    "_m": Unit("m", "meters", 1.0, "MTR"),
-    "_s": Unit("s", "seconds", 1.0, "SEC"),
-}
-# The list of a state that has a part, and its entries' unit where only some are meant
-_LISTS: dict[str, tuple[str, str | None]] = {
-    "bridle": ("bridles", None),
-    "line": ("lines", None),
-    "shackle": ("sensors", "kN"),
-    "depth": ("sensors", "m"),
-}
+SHARE = Unit("1", "ratio", 1.0, "C62", "")
+_UNITS = {end: Unit(*fields) for end, fields in _TABLE["units"].items()}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,46 +33,40 @@ class Quantity:
     name: str
     at: str
     about: str
+    entries: str = ""
+    only: str = ""
     flag: bool = False
     title: str = ""
 
     @property
-    def entries(self) -> str | None:
-        """The list of the state whose entries have the number; None where it is the state's own."""
-        return _LISTS[self.part][0] if self.part in _LISTS else None
-
-    @property
     def unit(self) -> Unit | None:
         """Its unit; None of a flag."""
-        ends = (unit for end, unit in _UNITS.items() if self.name.endswith(end))
-        return None if self.flag else next(ends, SHARE)
+        return None if self.flag else _UNITS.get(self._end, SHARE)
 
     @property
     def metric(self) -> str:
         """Its name in Prometheus."""
-        stem = self.name if self.part == "cage" else f"{self.part}_{self.name}"
-        end = next((end for end in _UNITS if stem.endswith(end)), "")
-        return f"seacage_{stem.removesuffix(end)}{f'_{self.unit.metric}' if self.unit else ''}"
+        words = [] if self.part == "cage" else [self.part]
+        unit = [self.unit.metric] if self.unit else []
+        return "_".join(["seacage", *words, self.name.removesuffix(self._end), *unit])
 
     def read(self, state: State) -> Iterator[tuple[str, float | None]]:
         """Name of each entry of the part, empty where there is but one, and its number."""
-        if self.entries is None:
-            yield "", _follow(state, self.at)
+        if not self.entries:
+            known = not self.at.startswith("water.") or state.water
+            yield "", attrgetter(self.at)(state) if known else None
             return
-        unit = _LISTS[self.part][1]
         for entry in getattr(state, self.entries):
-            if unit is None or entry.unit == unit:
-                yield entry.name, _follow(entry, self.at)
+            if not self.only or entry.unit == self.only:
+                yield entry.name, attrgetter(self.at)(entry)
 
-
-def _follow(thing: object, path: str) -> float | None:
-    value = reduce(lambda one, key: getattr(one, key, None), path.split("."), thing)
-    assert value is None or isinstance(value, float | int)
-    return value
+    @property
+    def _end(self) -> str:
+        return next((end for end in _UNITS if self.name.endswith(end)), "")
 
 
 QUANTITIES = tuple(
-    Quantity(part=part, name=name, **fields)
-    for part, table in read_packaged_table("seacage.service._schemas", "quantities.toml").items()
-    for name, fields in table.items()
+    Quantity(part=part, name=name, **_TABLE["entries"].get(part, {}), **fields)
+    for part, named in _TABLE["parts"].items()
+    for name, fields in named.items()
 )
