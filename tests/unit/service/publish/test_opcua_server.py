@@ -258,6 +258,7 @@ def encrypted(tmp_path_factory):
             yield live, address, files
 
 
+@pytest.mark.slow
 def test_with_a_certificate_every_client_signs_and_encrypts(encrypted):
     live, address, files = encrypted
 
