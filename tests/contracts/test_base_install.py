@@ -8,10 +8,12 @@ from importlib.metadata import requires
 import pytest
 
 from seacage.cage import Cage
+from seacage.testing import stand_in_twin
 
 EXTRA = {
     "xarray", "pandas", "zarr", "h5netcdf", "h5py", "dask", "distributed", "threadpoolctl",
     "matplotlib", "jinja2", "jax", "optax", "psycopg", "pyarrow", "rosbags",
+    "asyncua",
 }  # fmt: skip
 BARE = f"""
 import sys
@@ -67,6 +69,16 @@ def test_a_command_names_the_extra_that_it_needs_in_one_sentence(tmp_path, words
     assert last.endswith("Install it with: pip install 'seacage[sim]'.")
     assert "Traceback" not in ran.stderr
     assert "0 of" not in ran.stderr, "nothing is simulated before"
+
+
+@pytest.mark.slow
+def test_a_service_by_opc_ua_names_its_extra_before_it_begins(tmp_path):
+    stand_in_twin().write(tmp_path / "twin")
+    ran = bare("serve", "--twin", "twin", "--port", 0, "--opcua-port", 48_400, folder=tmp_path)
+    assert ran.returncode == 3, ran.stderr
+    last = ran.stderr.splitlines()[-1]
+    assert last.startswith("seacage: This needs asyncua")
+    assert last.endswith("pip install 'seacage[opcua]'.")
 
 
 def test_what_the_base_install_has_runs_there(tmp_path):

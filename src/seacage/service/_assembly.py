@@ -21,6 +21,7 @@ from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
 from seacage.service._live._twin_shelf import TwinShelf
+from seacage.service._publish._opcua_server import OpcUaServer
 from seacage.service._publish._webhooks import WebhookNotifier
 from seacage.service._quarantine import Quarantine
 from seacage.service._settings import CageSection, Settings
@@ -137,7 +138,11 @@ def assemble(
             )
             for name, twin in twins.items()
         }
+        tokens = Tokens(settings.data)
         feeds = _feeds(settings, cages, metrics)
+        if (opcua := settings.opcua) is not None:
+            admits = partial(_reads_all, tokens, settings.site, tuple(cages))
+            feeds.append(OpcUaServer(cages, opcua, admits).run)
         keep_days = settings.store.keep_days
         if replay is None and keep_days is not None:
             clocks = dict.fromkeys(cages, clock)
@@ -147,7 +152,7 @@ def assemble(
         service = Service(
             cages=cages,
             store=store,
-            tokens=Tokens(settings.data),
+            tokens=tokens,
             metrics=metrics,
             feeds=feeds,
             limits=settings.limits,
@@ -179,6 +184,12 @@ def server(service: Service, settings: Settings) -> "uvicorn.Server":
         ssl_keyfile=settings.key,
     )
     return uvicorn.Server(config)
+
+
+def _reads_all(tokens: Tokens, site: str, cages: Sequence[str], token: str) -> bool:
+    """Whether a token may read every cage."""
+    grant = tokens.grant(token)
+    return grant is not None and all(grant.allows("read", cage, site=site) for cage in cages)
 
 
 def _check_group(settings: Settings) -> None:

@@ -11,6 +11,7 @@ from pydantic_settings import BaseSettings, InitSettingsSource, SettingsConfigDi
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.service._auth._limits import Limits
 from seacage.service._mqtt._topics import Name
+from seacage.service._publish._opcua_server import OpcUaSettings
 from seacage.service._publish._post import Webhook
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
@@ -53,6 +54,8 @@ class MqttSection(_Section):
     group: Name | None = None
     # How often a cage's state is published [s]
     state_every_s: float = Field(default=10.0, ge=1.0, le=3600.0)
+    # Where Home Assistant looks for devices, ``homeassistant``; none are announced if left out
+    home_assistant: Name | None = None
 
 
 class TailSection(_Section):
@@ -109,6 +112,7 @@ class Settings(BaseSettings):
     log: Literal["lines", "json"] = "lines"  # lines for people or JSON for machines
     store: StoreSection = StoreSection()
     mqtt: MqttSection | None = None
+    opcua: OpcUaSettings | None = None
     cages: tuple[CageSection, ...] = ()
     # Limits by kind or name, as ``seacage.twin.AlarmPolicy.from_dict`` takes them
     alarms: dict[str, Any] = Field(default_factory=dict)
@@ -119,7 +123,9 @@ class Settings(BaseSettings):
 
     @model_validator(mode="after")
     def _settings_agree(self) -> Self:
-        if (self.certificate is None) != (self.key is None):
+        if any(
+            (one.certificate is None) != (one.key is None) for one in (self, self.opcua or self)
+        ):
             raise ValueError("TLS takes both a certificate and its key")
         names = [cage.name for cage in self.cages]
         if len(names) > 1 and (None in names or len(set(names)) < len(names)):
@@ -133,10 +139,16 @@ class Settings(BaseSettings):
         return self
 
     def check_host(self) -> None:
-        """Refuse to speak plain HTTP where others can hear.
+        """Refuse to speak plain HTTP or OPC UA where others can hear.
 
         Raises InputError: an address beyond loopback without a certificate or ``--insecure-http``.
         """
+        opcua = self.opcua
+        if opcua and opcua.certificate is None and opcua.host not in _LOOPBACK:
+            raise InputError(
+                f"serve: opcua.host = {opcua.host} is reachable from outside, and tokens would be "
+                "sent in plain text. Give opcua.certificate and opcua.key, or listen on 127.0.0.1."
+            )
         safe = self.host in _LOOPBACK or self.certificate is not None
         if not safe and not self.insecure_http:
             raise InputError(

@@ -6,7 +6,8 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.records import Sample
-from seacage.service._assembly import assemble, read_twins, store_place
+from seacage.service._assembly import _reads_all, assemble, read_twins, store_place
+from seacage.service._auth._token_store import Tokens
 from seacage.service._live._replay import replay_of
 from seacage.service._settings import Settings
 from seacage.service._store._store import StoreError
@@ -160,3 +161,21 @@ def test_a_record_is_not_replayed_into_several_cages(tmp_path):
     buoy = stand_in_field(twin.cage, days=0.25).buoy
     with pytest.raises(InputError, match="there are 2"):
         assemble(settings_of(tmp_path), {"a": twin, "b": twin}, replay=replay_of(buoy))
+
+
+@pytest.mark.parametrize(
+    ("scopes", "reads"),
+    [(["read"], True), (["admin"], True), (["read:site"], True), (["read:north"], False)],
+)
+def test_opc_ua_takes_a_token_that_reads_every_cage(tmp_path, scopes, reads):
+    tokens = Tokens(tmp_path)
+    token = tokens.mint(scopes, keep=False)
+    assert _reads_all(tokens, "site", ("north", "south"), token) == reads
+    assert not _reads_all(tokens, "site", ("north", "south"), "guess")
+
+
+def test_opc_ua_is_served_beside_the_rest(tmp_path, ended):
+    pytest.importorskip("asyncua")
+    service = assemble(settings_of(tmp_path, opcua={}), {"ace": stand_in_twin()})
+    ended.append(service)
+    assert any("OpcUaServer" in feed.__qualname__ for feed in service._feeds)

@@ -76,6 +76,9 @@ def test_a_whole_farm_fits_in_a_file(file):
         ("[store]\nkeep = 3", "store.keep"),
         ('[store]\narchive = "parquet"', "keep_days too"),
         ('certificate = "c.pem"', "its key"),
+        ('[opcua]\nkey = "k.pem"', "its key"),
+        ("[opcua]\nport = 0", "opcua.port = 0"),
+        ('[mqtt]\nurl = "mqtt://h"\nhome_assistant = "a/#"', "mqtt.home_assistant"),
         ('[[cages]]\ntwin = "a"\n[[cages]]\ntwin = "b"', "a name each"),
         ('[[cages]]\ntwin = "a"\nname = "../a"', "cages.0.name"),
         ("[limits]\nburst = 0", "limits.burst = 0"),
@@ -124,6 +127,15 @@ def test_plain_http_beyond_this_machine_takes_a_decision(host, tmp_path):
         Settings(host=host).check_host()
     Settings(host=host, insecure_http=True).check_host()
     Settings(host=host, certificate=tmp_path / "c.pem", key=tmp_path / "k.pem").check_host()
+
+
+def test_opc_ua_beyond_this_machine_takes_a_certificate_and_nothing_else_does(tmp_path):
+    outside = {"host": "0.0.0.0"}
+    with pytest.raises(InputError, match=r"opcua\.host = 0\.0\.0\.0 is reachable from outside"):
+        Settings(opcua=outside, insecure_http=True).check_host()
+    Settings(opcua={}).check_host()
+    files = {"certificate": tmp_path / "c.pem", "key": tmp_path / "k.pem"}
+    Settings(opcua=outside | files).check_host()
 
 
 @pytest.mark.parametrize("host", ["127.0.0.1", "::1", "localhost"])

@@ -13,6 +13,7 @@ import typer
 from seacage.service._cli._console import Exit, Finding, guard, refusal, report, report_findings
 
 if TYPE_CHECKING:
+    from seacage.service._publish._opcua_server import OpcUaSettings
     from seacage.service._settings import Settings
 
 group = typer.Typer(help="Settings of the service.")
@@ -92,6 +93,8 @@ def _findings(settings: "Settings", *, reach: bool) -> Iterator[Finding]:
     yield _try("store", lambda: _check_store(settings, reach=reach))
     if settings.mqtt:
         yield _try("mqtt", lambda: _check_broker(settings, reach=reach))
+    if settings.opcua:
+        yield _try("opcua", lambda: _check_opcua(settings))
     for hook in settings.webhooks:
         yield _try("webhook", lambda one=hook: _check_webhooks(settings, one.cages))
 
@@ -110,18 +113,24 @@ def _listens(settings: "Settings") -> str:
     return f"{settings.host}:{settings.port}, {'HTTPS' if settings.certificate else 'HTTP'}"
 
 
-def _check_certificate(settings: "Settings") -> str:
-    assert settings.certificate
+def _check_certificate(section: "Settings | OpcUaSettings") -> str:
+    certificate, key = section.certificate, section.key
+    assert certificate
     try:
-        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(
-            settings.certificate, settings.key
-        )
+        ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(certificate, key)
     except (ssl.SSLError, OSError) as error:
-        raise refusal(
-            f"{settings.certificate} and {settings.key} are no PEM certificate and its key "
-            f"({error})."
-        ) from error
-    return f"{settings.certificate} and its key"
+        sentence = f"{certificate} and {key} are no PEM certificate and its key ({error})."
+        raise refusal(sentence) from error
+    return f"{certificate} and its key"
+
+
+def _check_opcua(settings: "Settings") -> str:
+    assert settings.opcua
+    if importlib.util.find_spec("asyncua") is None:
+        raise refusal("asyncua is not installed. Install seacage[opcua].")
+    if settings.opcua.certificate:
+        _check_certificate(settings.opcua)
+    return f"{settings.opcua.host}:{settings.opcua.port}"
 
 
 def _writable(folder: Path) -> str:

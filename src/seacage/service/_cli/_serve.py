@@ -30,6 +30,7 @@ def serve(
     site: str | None = None,
     store: str | None = None,
     mqtt: str | None = None,
+    opcua_port: Annotated[int | None, typer.Option(min=1, max=65535)] = None,
     certificate: InFile = None,
     key: InFile = None,
     demo: Annotated[bool, typer.Option("--demo")] = False,
@@ -66,6 +67,7 @@ def serve(
         site: Where the cages lie, in topics and scopes. [default: site]
         store: postgresql://user@host/name, or a file of SQLite. [default: in --data]
         mqtt: Broker that samples come by, as mqtt://host:1883.
+        opcua_port: Port of an OPC UA server of states and alarms; without it there is none.
         certificate: PEM, to speak HTTPS.
         key: PEM, of the certificate.
         demo: Feed the demonstration: a buoy and virtual sensors.
@@ -93,6 +95,7 @@ def serve(
         speed=speed,
         store={"url": store} if store else None,
         mqtt={"url": mqtt} if mqtt else None,
+        opcua={"port": opcua_port} if opcua_port else None,
         cages=[{"twin": twin, "name": cage}] if twin else None,
     )
     if demo and settings.cages:
@@ -101,7 +104,9 @@ def serve(
     begin_logs(settings.log)
     os.umask(0o077)  # what a service writes is its owner's alone
     # The port first: minutes of preparation should not end at a port that is taken.
-    with _listening(settings.host, settings.port) as listener:
+    if settings.opcua:
+        _listening(settings.opcua.host, settings.opcua.port, "--opcua-port").close()
+    with _listening(settings.host, settings.port, "--port") as listener:
         twins, replay = _prepare(settings, cage, demo=demo, record=record)
         pace = 60.0 if speed is None else speed
         service = assemble(settings, twins, replay=replay, speed=pace)
@@ -110,14 +115,14 @@ def serve(
             server(service, settings).run(sockets=[listener])
 
 
-def _listening(host: str, port: int) -> socket.socket:
+def _listening(host: str, port: int, option: str) -> socket.socket:
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
         return socket.create_server((host, port), family=family)
     except OSError as error:
         raise OSError(
             f"serve: cannot listen on {host}:{port} ({error.strerror}). "
-            "Stop what listens there, or choose another with --port."
+            f"Stop what listens there, or choose another with {option}."
         ) from error
 
 

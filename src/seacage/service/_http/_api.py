@@ -30,6 +30,7 @@ from seacage.service._http._session_routes import sessions
 from seacage.service._http._websocket import sockets
 from seacage.service._http._whatif_routes import what_if
 from seacage.service._live._cage import LiveCage
+from seacage.service._live._cage_gauges import CageGauges
 from seacage.service._live._frame import MEDIA_TYPE
 from seacage.service._live._metrics import Metrics
 from seacage.service._rov._files import MCAP
@@ -71,6 +72,8 @@ class Service:
         self.gate = Gate(tokens, metrics=metrics, limits=limits, audit=audit, site=site)
         metrics.damaged.set_function(lambda: float(store.damage.count))
         metrics.unverified.set_function(lambda: float(store.damage.unverified))
+        metrics.ready.set_function(lambda: float(self.trouble() is None))
+        metrics.registry.register(CageGauges(cages))
         self._feeds = feeds
         self._tasks: list[asyncio.Task[None]] = []
 

@@ -4,7 +4,7 @@ import asyncio
 import json
 import time
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import timedelta
 from pathlib import Path
@@ -16,6 +16,7 @@ from seacage.service._live._alarm_desk import Announcement, announcement_json
 from seacage.service._live._cage import LiveCage
 from seacage.service._live._metrics import Metrics
 from seacage.service._mqtt._broker import Broker
+from seacage.service._mqtt._home_assistant import device_message
 from seacage.service._mqtt._link import Link, Received, Will
 from seacage.service._mqtt._messages import LARGEST, Settled, acknowledgement_text, read_observed
 from seacage.service._mqtt._topics import Topics, share
@@ -83,9 +84,12 @@ class MqttFeed:
         group: str | None = None,
         ca: Path | None = None,  # file of the authority that signed the broker's certificate
         state_every_s: float = 10.0,  # how often a cage's state is published at most [s]
+        # Where Home Assistant looks for devices; None to announce none
+        home_assistant: str | None = None,
     ) -> None:
         self._topics, self._cages, self._metrics = Topics(site), dict(cages), metrics
         self._quarantine, self._state_every_s = quarantine, state_every_s
+        self._client_id, self._home_assistant = client_id, home_assistant
         self._queue, self._bytes = deque[Received](), 0
         self._behind = asyncio.Event()
         self._behind_at = 0.0
@@ -111,6 +115,7 @@ class MqttFeed:
             receive_maximum=_AHEAD,
             session_s=_SESSION_S,
             will=_will(self._topics.status(client_id), tuple(cages)),
+            greetings=self._devices,
         )
         self._messages = metrics.messages.labels(str(broker))
         metrics.connected.labels(str(broker)).set_function(lambda: float(self.fault is None))
@@ -278,6 +283,12 @@ class MqttFeed:
                 self._link.publish(topic, text, qos=0, retain=True)  # soon there is another
                 self._say_alarms()
                 await asyncio.sleep(self._state_every_s)
+
+    def _devices(self) -> Iterator[tuple[str, bytes]]:
+        """Announce the cages to Home Assistant, if that is wanted."""
+        client, every_s, prefix = self._client_id, self._state_every_s, self._home_assistant
+        for state in (cage.snapshot.state for cage in self._cages.values()) if prefix else ():
+            yield device_message(prefix or "", state, self._topics, client=client, every_s=every_s)
 
     def _say_alarms(self) -> None:
         # Where nothing is read, nobody sees that an alarm was received.

@@ -49,6 +49,7 @@ _GATHERED_S = 0.1  # what comes within so long is stepped through together, and 
 # Samples that may wait to be stepped through, some 20 MB; who sends more is made to wait
 MOST_WAITING = 20_000
 _LONG_AGO = timedelta(days=30)  # of a change of the cage that is written down
+STALLED_S = 30.0  # beyond a tick, without a step, after which a state is not of now
 _PATIENCE_S = 30.0  # of who replaces a twin
 _log = structlog.get_logger(__name__)
 
@@ -140,6 +141,12 @@ class LiveCage:
     def twin(self) -> Twin:
         """The twin in force."""
         return self.past.twin
+
+    @property
+    def current(self) -> State | None:
+        """What the cage says now; None where it is no longer stepped."""
+        silent_s = time.monotonic() - self.snapshot.made
+        return self.snapshot.state if silent_s < self._tick_s + STALLED_S else None
 
     @property
     def latest_allowed(self) -> datetime:
@@ -394,8 +401,6 @@ class LiveCage:
         self.snapshot = self._snapshot_of(answered)
         severities = (alarm.severity for alarm in self.snapshot.state.alarms)
         self._metrics.count_alarms(self.name, severities)
-        self._metrics.valid.labels(self.name).set(float(self.snapshot.state.valid))
-        self._metrics.input_age.labels(self.name).set(self.snapshot.state.age_s or 0.0)
         for mailbox in self._mailboxes:
             mailbox.leave(self.snapshot)
 

@@ -13,10 +13,10 @@ _WORDS = {800: "critical", 500: "warning", 1: "note"}
 
 
 class Metrics:
-    """Counters and gauges of one service, in a registry of their own."""
+    """Counters and gauges of one service, in a registry of their own that takes others too."""
 
     def __init__(self) -> None:
-        registry = self._registry = CollectorRegistry()
+        registry = self.registry = CollectorRegistry()
         counter = partial(Counter, registry=registry)
         gauge = partial(Gauge, registry=registry)
         histogram = partial(Histogram, registry=registry)
@@ -34,10 +34,6 @@ class Metrics:
             "seacage_notices",
             "What the twin noticed: values flagged, streams silent and back.",
             ("cage", "kind"),
-        )
-        self.valid = gauge("seacage_valid", "1 while the twin answers with numbers.", ("cage",))
-        self.input_age = gauge(
-            "seacage_input_age_seconds", "Age of the reading that the answer rests on.", ("cage",)
         )
         self.clients = gauge("seacage_live_clients", "Open live connections.", ("cage",))
         self.dropped = counter(
@@ -89,6 +85,7 @@ class Metrics:
             "1 while a backlog drains, and the newest of each stream goes before it.",
             ("broker",),
         )
+        self.ready = gauge("seacage_ready", "1 while /readyz says that the service is ready.")
         self.quarantined = gauge(
             "seacage_quarantined",
             "Messages and lines that could not be read, set aside since the start.",
@@ -105,7 +102,7 @@ class Metrics:
 
     def text(self, cages: Collection[str] | None = None) -> bytes:
         """Everything in Prometheus' text format, or only what is about some cages."""
-        return generate_latest(self._registry if cages is None else _Part(self._registry, cages))
+        return generate_latest(self.registry if cages is None else _Part(self.registry, cages))
 
 
 class _Part(Collector):

@@ -3,7 +3,7 @@
 import asyncio
 import random
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -86,11 +86,14 @@ class Link:
         receive_maximum: int,
         session_s: int,
         will: Will | None = None,  # what the broker says when this client is lost
+        # What it publishes whenever it has found the broker, retained: topics and payloads
+        greetings: Callable[[], Iterable[tuple[str, bytes]]] = tuple,
         # 0 to get only what is published from now on, of which the broker keeps nothing
         qos: int = 1,
     ) -> None:
         self._broker, self._client_id, self._filters = broker, client_id, tuple(filters)
         self._listener, self._will, self._qos = listener, will, qos
+        self._greetings = greetings
         self._connection: _Connection | None = None
         self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
         self.fault: str | None = f"{broker} has not answered yet."
@@ -144,6 +147,8 @@ class Link:
             _log.info("broker found", broker=str(self._broker), client=self._client_id)
             if self._will is not None:
                 self.publish(self._will.topic, self._will.here, retain=True)
+            for topic, payload in self._greetings():
+                self.publish(topic, payload, retain=True)
             await connection.ended.wait()
             raise _Ended(connection.reason)
         finally:
