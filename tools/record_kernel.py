@@ -1,7 +1,7 @@
 """Records what this machine's kernel answers, for `play_kernel.c` to compare another one with.
 
-A small cage settles in a current, and moves in waves for some seconds: the first call of Newton's
-method and one of the march go into the file, with every array before and after.
+A small cage settles in a current, and moves in waves: the first call of Newton's method and one,
+cut short, of the march go into the file, with every array before and after.
 
     python tools/record_kernel.py calls.bin
 """
@@ -21,7 +21,7 @@ from seacage.dynamics._kernel._structs import Struct
 from seacage.ocean import SeaState
 
 CALLS = ("seacage_balance", "seacage_march")
-SECONDS = 1.0  # of the march
+REFRESHES = 40  # of the water, in the march: seconds in an emulator
 
 
 def record(path: Path) -> None:
@@ -30,7 +30,7 @@ def record(path: Path) -> None:
     sea = SeaState(current_speed=0.5, current_to=40.0, hs=1.5, tp=7.0, wave_from=220.0)
     with path.open("wb") as file, watch(file):
         settle(cage, SeaState(current_speed=0.5, current_to=40.0))
-        simulate(cage, sea, duration=SECONDS)
+        simulate(cage, sea, duration=1.0)
 
 
 @contextmanager
@@ -54,6 +54,9 @@ def recorder(
 
     def call(*arguments: Any) -> None:
         structs: list[Struct] = [argument._obj for argument in arguments]
+        if name == "seacage_march":
+            schedule = next(one for one in structs if one.c_name == "schedule")
+            schedule.refreshes = min(REFRESHES, schedule.refreshes)  # pyright: ignore[reportAttributeAccessIssue]
         numbers = [bytes(one) for one in structs]
         before = [{key: each.tobytes() for key, each in one.arrays.items()} for one in structs]
         function(*arguments)
