@@ -95,7 +95,11 @@ class Archive:
         return _folder_names(self.folder / _quote_name(cage))
 
     def faults(self) -> Iterator[tuple[str, str | None]]:
-        """Look at every file: its path, and what is wrong with it, or None."""
+        """Look at every file: its path, and what is wrong with it, or None.
+
+        Raises ArchiveError: pyarrow is not installed, which is no fault of a file.
+        """
+        _arrow()
         for cage in self.cages():
             for stream in self.streams(cage):
                 folder = self._folder(cage, stream)
