@@ -12,8 +12,8 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # A file's tests go to one worker, so that its fixtures are made once.
 PYTEST := $(BIN)/python -m pytest -n $(WORKERS) --dist loadfile
-OUTSIDE := mosquitto,postgres,node,chromium
-FAST := not slow and not mosquitto and not postgres and not node and not chromium
+OUTSIDE := mosquitto,postgres,node,chromium,qemu
+FAST := not slow and not mosquitto and not postgres and not node and not chromium and not qemu
 KERNEL := src/seacage/dynamics/_kernel
 BUILT := $(wildcard $(KERNEL)/_kernel_*.so $(KERNEL)/_kernel_*.dylib)
 PAGE := src/seacage/service/page/sources.sha256
@@ -23,7 +23,7 @@ PAGE_SOURCES := web/index.html web/package-lock.json web/vite.config.js \
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
 .PHONY: help run page test test-times test-rest test-long test-all lint check lock bench bench-peers lock-peers sanitize \
-  site release validate always
+  site release wheels validate always
 
 help: ## this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 14
@@ -41,7 +41,7 @@ test: .venv/.dev .venv/.project ## the fast tests, without any outside program
 test-times: .venv/.dev .venv/.project ## where the fast tests' processor time goes
 	$(PYTEST) -m "$(FAST)" -p tools.times
 
-test-rest: .venv/.dev .venv/.project $(PAGE) ## the slow tests, and those with Mosquitto, PostgreSQL, Node or Chromium
+test-rest: .venv/.dev .venv/.project $(PAGE) ## the slow tests, and those with Mosquitto, PostgreSQL, Node, Chromium or qemu
 	tools/services.sh
 	SEACAGE_REQUIRE=$(OUTSIDE) $(PYTEST) -m "not ($(FAST))"
 
@@ -82,6 +82,15 @@ release: .venv/.dev .venv/.project ## a release in commits, a tag and dist/ (VER
 
 validate: .venv/.project ## our physics against published numbers, as docs/validation.md
 	OMP_NUM_THREADS=1 $(BIN)/python -m validation --workers $(WORKERS)
+
+WHEELS_PYTHON := .venv-wheels/bin/python
+ZIG_CACHE := $(abspath .venv-wheels/zig)
+wheels: $(PAGE) ## wheels for every kind of machine into dist/, each compiled here (docs/install.md)
+	test -x $(WHEELS_PYTHON) || $(PYTHON) -m venv .venv-wheels
+	$(WHEELS_PYTHON) -m pip install --quiet --requirement tools/wheels.txt
+	@set -e; for target in $$($(WHEELS_PYTHON) -c 'import hatch_build; print(*hatch_build.TARGETS)'); do \
+	  SEACAGE_TARGET=$$target ZIG_GLOBAL_CACHE_DIR=$(ZIG_CACHE) ZIG_LOCAL_CACHE_DIR=$(ZIG_CACHE) \
+	    $(WHEELS_PYTHON) -m hatchling build -t wheel -d dist; done
 
 # The development lock repeats the versions of the first, so both fit in one environment.
 COMPILE := $(BIN)/uv pip compile pyproject.toml --universal --python-version 3.11 --upgrade --quiet \

@@ -96,6 +96,12 @@ def chromium() -> Path | None:
 
 
 @pytest.fixture(scope="session")
+def qemu() -> list[str | Path | None]:
+    """How a program for 64-bit ARM is run: the emulator, and where Debian's C library for it is."""
+    return [program("qemu"), "-L", "/usr/aarch64-linux-gnu"]
+
+
+@pytest.fixture(scope="session")
 def built_page(pytestconfig: pytest.Config) -> Path:
     """The page, where it was built; `make page` builds it."""
     folder = pytestconfig.rootpath / "src" / "seacage" / "service" / "page"

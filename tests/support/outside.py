@@ -14,6 +14,7 @@ PROGRAMS = {
     "postgres": ("postgres",),
     "node": ("node",),
     "chromium": ("chromium", "chromium-browser", "google-chrome"),
+    "qemu": ("qemu-aarch64-static",),
 }
 """The outside programs by marker; a fixture of the same name hands the program out."""
 

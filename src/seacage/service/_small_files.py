@@ -1,13 +1,30 @@
 """Small files that a full disk or a lost supply leaves whole, and that their owner alone reads."""
 
 import errno
-import fcntl
 import os
 from collections.abc import Callable, Generator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from types import ModuleType
+
+from seacage.conventions import SeacageError
 
 _OWNERS = 0o600
+
+
+def system_locks() -> ModuleType:
+    """The module for locks between processes, which end with the process that has them.
+
+    Raises SeacageError: on Windows, which lacks such locks.
+    """
+    try:
+        import fcntl
+    except ImportError as error:
+        raise SeacageError(
+            "This works with a service's files, which needs the locks of Linux or macOS: under "
+            "Windows run it in WSL or in a container."
+        ) from error
+    return fcntl
 
 
 def write_small(path: Path, content: str | bytes, *, mode: int = _OWNERS) -> None:
@@ -34,9 +51,10 @@ def write_small(path: Path, content: str | bytes, *, mode: int = _OWNERS) -> Non
 
 def rewrite_small(path: Path, changed: Callable[[str], str]) -> None:
     """Replace a file by what becomes of its text; of several processes one does so at a time."""
+    locks = system_locks()
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _folder(path.parent) as folder:
-        fcntl.flock(folder, fcntl.LOCK_EX)
+        locks.flock(folder, locks.LOCK_EX)
         text = path.read_bytes().decode("utf-8", "replace") if path.exists() else ""
         write_small(path, changed(text))
 
@@ -49,11 +67,12 @@ def append_line(path: Path, line: str, *, most: int, sync: bool = False) -> None
 
     Raises OSError: the disk does not take it.
     """
+    locks = system_locks()
     path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     written = line.encode() + b"\n"
     file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, _OWNERS)
     try:
-        fcntl.flock(file, fcntl.LOCK_EX)
+        locks.flock(file, locks.LOCK_EX)
         size = os.fstat(file).st_size
         if size and os.pread(file, 1, size - 1) != b"\n":
             written = b"\n" + written

@@ -11,6 +11,8 @@ from types import ModuleType
 import pytest
 from hatchling.build import get_requires_for_build_editable, get_requires_for_build_wheel
 
+from seacage.dynamics._kernel._library import LEVELS
+
 KERNEL = """
 #include <math.h>
 double norm(double x, double y) { return sqrt(x * x + y * y); }
@@ -48,7 +50,7 @@ def library(build: ModuleType, tmp_path: Path) -> Path:
     source.write_text(KERNEL)
     source.with_name("_second.c").write_text(SECOND)
     source.with_name("_step.h").write_text("#define STEP 1.0f\n")
-    return build.build(compiler, source, build.TARGETS[0])
+    return build.build(compiler, source, build.HOST.instruction_sets[0])
 
 
 @pytest.fixture
@@ -125,7 +127,7 @@ def test_a_kernel_that_does_not_compile_is_refused_with_the_words_of_the_compile
     source = library.with_name("_kernel.c")
     source.write_text("not C")
     with pytest.raises(build.CompileError, match=r"failed with code 1[\s\S]*error"):
-        build.build(build.system_compiler(), source, build.TARGETS[0])
+        build.build(build.system_compiler(), source, build.HOST.instruction_sets[0])
 
 
 @pytest.mark.usefixtures("no_compiler")
@@ -147,6 +149,30 @@ def test_a_compiler_named_in_cc_is_taken_at_its_word(
 
 
 def test_zig_gets_the_instruction_set_in_its_own_spelling(build: ModuleType) -> None:
-    assert build.instruction_set(["gcc"], "x86-64-v3") == ["-march=x86-64-v3"]
+    assert build.flags_of(["gcc"], "x86-64-v3") == ["-march=x86-64-v3"]
     zig = [sys.executable, "-m", "ziglang", "cc"]
-    assert build.instruction_set(zig, "x86-64-v3") == ["-mcpu=x86_64_v3"]
+    assert build.flags_of(zig, "x86-64-v3") == ["-mcpu=x86_64_v3"]
+
+
+def test_another_machines_wheel_is_compiled_by_zig_also_where_cc_names_a_compiler(
+    build: ModuleType, monkeypatch: pytest.MonkeyPatch, pytestconfig: pytest.Config
+) -> None:
+    monkeypatch.chdir(pytestconfig.rootpath)
+    monkeypatch.setenv("CC", "ccache clang")
+    monkeypatch.setenv("SEACAGE_TARGET", "macos-arm64")
+    assert build.compiler_for(build.chosen_target())[-2:] == ["-target", "aarch64-macos.11.0"]
+    assert build.ZIGLANG in get_requires_for_build_wheel()
+
+
+def test_an_unknown_target_is_refused_with_all_that_there_are(
+    build: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("SEACAGE_TARGET", "amiga")
+    with pytest.raises(SystemExit, match=r"'amiga' is no target: set it to linux-x86_64, .*unset"):
+        build.chosen_target()
+
+
+def test_each_target_has_an_instruction_set_that_the_package_loads(build: ModuleType) -> None:
+    for target in build.TARGETS.values():
+        assert set(target.instruction_sets) <= set(LEVELS)
+        assert target.suffix in build.LINK

@@ -103,6 +103,18 @@ def test_an_install_goes_on_without_its_page_and_says_why(
     )
 
 
+def test_a_wheel_for_another_machine_is_refused_without_its_page(
+    hook: ModuleType, page: ModuleType, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refused() -> None:
+        raise page.PageError("npm could not reach its registry.")
+
+    monkeypatch.setattr(page, "build", refused)
+    monkeypatch.setattr(hook, "page_build", lambda _: page)
+    with pytest.raises(page.PageError, match="registry"):
+        hook.build_page("", needed=True)
+
+
 def test_an_install_leaves_a_current_page_alone(
     hook: ModuleType, built: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:

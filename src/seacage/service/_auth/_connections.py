@@ -1,7 +1,6 @@
 """What one asker may hold: open connections, and rows of long answers in the making."""
 
 import asyncio
-import resource
 from collections import Counter
 from typing import Any
 
@@ -79,6 +78,8 @@ class Connections:
 
 
 def _descriptors() -> int:
+    import resource  # which Windows lacks
+
     limit, _ = resource.getrlimit(resource.RLIMIT_NOFILE)
     return 1 << 20 if limit == resource.RLIM_INFINITY else max(16, limit - _OTHER_FILES)
 

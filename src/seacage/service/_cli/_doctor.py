@@ -20,6 +20,7 @@ _EXTRAS = {
     "postgres": ("psycopg",),
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
+    "opcua": ("asyncua",),
 }
 Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 

@@ -81,7 +81,9 @@ def serve(
     from seacage.service._assembly import assemble, server
     from seacage.service._logs import begin_logs
     from seacage.service._settings import read_settings
+    from seacage.service._small_files import system_locks
 
+    system_locks()  # before minutes of making a demonstration
     settings = read_settings(
         config,
         data=data,

@@ -1,6 +1,5 @@
 """The archive: one Parquet file per cage, stream and UTC day, and a manifest of each stream."""
 
-import fcntl
 import hashlib
 import json
 from collections.abc import Generator, Iterator, Mapping, Sequence
@@ -13,7 +12,7 @@ from urllib.parse import quote, unquote
 
 from seacage.conventions import Flag, SeacageError
 from seacage.records import KEYS, Sample
-from seacage.service._small_files import write_small
+from seacage.service._small_files import system_locks, write_small
 from seacage.service._store._database._rows import Bounds, microseconds, moment_of
 from seacage.service._store._database._session import StoreError
 
@@ -96,7 +95,11 @@ class Archive:
         return _folder_names(self.folder / _quote_name(cage))
 
     def faults(self) -> Iterator[tuple[str, str | None]]:
-        """Look at every file: its path, and what is wrong with it, or None."""
+        """Look at every file: its path, and what is wrong with it, or None.
+
+        Raises ArchiveError: pyarrow is not installed, which is no fault of a file.
+        """
+        _arrow()
         for cage in self.cages():
             for stream in self.streams(cage):
                 folder = self._folder(cage, stream)
@@ -182,9 +185,10 @@ def _folder_names(folder: Path) -> list[str]:
 @contextmanager
 def _lock(folder: Path) -> Generator[None]:
     """Let one process at a time change the days of a stream."""
+    locks = system_locks()
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / ".lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+        locks.flock(file, locks.LOCK_EX)
         yield
 
 

@@ -1,6 +1,5 @@
 """The store in one SQLite file: one connection that writes, readers beside it."""
 
-import fcntl
 import sqlite3
 import time
 from collections.abc import Generator, Iterable, Sequence
@@ -10,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TextIO
 
-from seacage.service._small_files import keep_private
+from seacage.service._small_files import keep_private, system_locks
 from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Damage, checksum
 from seacage.service._store._database._pool import Pool, close_on_error
@@ -57,9 +56,10 @@ def _lock_file(path: Path) -> TextIO | None:
 
     It lies beside the file that it is about, for SQLite has locks of its own on that.
     """
+    locks = system_locks()
     file = path.open("a", encoding="utf-8")
     try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        locks.flock(file, locks.LOCK_EX | locks.LOCK_NB)
     except BlockingIOError:
         file.close()
         return None
