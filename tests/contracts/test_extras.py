@@ -79,7 +79,8 @@ def install(tmp_path_factory, wheel):
         there = folder / ("-".join(extras) or "base")
         uv = Path(sys.executable).with_name("uv")
         subprocess.run([uv, "venv", "--quiet", "--python", sys.executable, there], check=True)
-        words = ["pip", "install", "--quiet", "--constraint", locked, "--python", there]
+        words = ["pip", "install", "--quiet", "--system-certs", "--constraint", locked]
+        words += ["--python", there]
         named = f"seacage[{','.join(extras)}] @ {wheel.as_uri()}"
         subprocess.run([uv, *words, named], check=True)
         return there / "bin/seacage"

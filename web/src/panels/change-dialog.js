@@ -29,7 +29,7 @@ export class ChangeDialog {
       this.send();
     });
     this.dialog = make("dialog", { className: "sheet", "aria-labelledby": "change-title" }, form);
-    document.body.append(this.dialog);
+    this.dialog.addEventListener("close", () => this.dialog.remove());
   }
 
   ask() {
@@ -38,6 +38,7 @@ export class ChangeDialog {
     this.when.value = this.why.value = "";
     this.say("");
     this.chosen();
+    document.body.append(this.dialog);
     this.dialog.showModal();
     this.change.focus();
   }
