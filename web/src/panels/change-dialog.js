@@ -4,23 +4,23 @@ import { make } from "../dom.js";
 import { text } from "../texts/index.js";
 import { write } from "./dom.js";
 
-const CHANGES = ["net cleaned", "net changed", "sensor moved"];
+const CHANGES = ["net-cleaned", "net-changed", "sensor-moved"];
 
 export class ChangeDialog {
   constructor(desk) {
     this.desk = desk;
     this.change = make("select", { id: "change-what" },
-      ...CHANGES.map((value) => make("option", { value }, text(`journal.action.${value.replaceAll(" ", "-")}`))));
+      ...CHANGES.map((value) => make("option", { value }, text(`journal.action.${value}`))));
     this.sensor = make("select", { id: "change-sensor" });
-    this.which = field("change-sensor", "change.sensor", this.sensor);
+    this.which = field("change-sensor", text("change.sensor"), this.sensor);
     this.when = make("input", { id: "change-when", type: "datetime-local" });
     this.why = make("textarea", { id: "change-why", rows: 3, maxLength: 500 });
     this.fault = make("p", { className: "dialog-fault", role: "alert", hidden: true });
     this.go = make("button", { type: "submit", className: "button main" }, text("change.word"));
     const form = make("form", { method: "dialog" }, make("h2", { id: "change-title" }, text("change.title")),
       make("p", { className: "dialog-words" }, text("change.about")),
-      field("change-what", "change.what", this.change), this.which,
-      field("change-when", "change.when", this.when), field("change-why", "dialog.whyOrNot", this.why), this.fault,
+      field("change-what", text("change.what"), this.change), this.which,
+      field("change-when", text("change.when"), this.when), field("change-why", text("dialog.whyOrNot"), this.why), this.fault,
       make("div", { className: "dialog-buttons" },
         make("button", { type: "button", className: "button", onclick: () => this.dialog.close() }, text("dialog.cancel")), this.go));
     this.change.addEventListener("change", () => this.chosen());
@@ -44,7 +44,7 @@ export class ChangeDialog {
   }
 
   chosen() {
-    this.which.hidden = this.change.value !== "sensor moved";
+    this.which.hidden = this.change.value !== "sensor-moved";
   }
 
   say(fault) {
@@ -57,7 +57,7 @@ export class ChangeDialog {
     const t = this.when.value ? new Date(this.when.value).toISOString() : null;
     this.go.disabled = true;
     try {
-      await this.desk.record({ change: this.change.value, sensor, t, why: this.why.value.trim() });
+      await this.desk.record({ change: this.change.value.replaceAll("-", " "), sensor, t, why: this.why.value.trim() });
       this.dialog.close();
     } catch (error) {
       this.say(error.message);
@@ -67,5 +67,5 @@ export class ChangeDialog {
 }
 
 function field(id, words, input) {
-  return make("div", { className: "field" }, make("label", { htmlFor: id }, text(words)), input);
+  return make("div", { className: "field" }, make("label", { htmlFor: id }, words), input);
 }

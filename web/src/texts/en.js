@@ -404,7 +404,7 @@ export default {
     title: "Work on the cage",
     about: "A cleaned net and a moved sensor look like faults. Once it is written down, the detector of faults takes what it does to the readings for usual.",
     what: "What was done",
-    sensor: "Sensor",
+    sensor: "Which sensor",
     when: "When, by this device's clock (empty for now)",
     word: "Write down",
   },

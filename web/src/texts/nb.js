@@ -401,7 +401,7 @@ export default {
     title: "Arbeid på merden",
     about: "En vasket not og en flyttet sensor ligner på feil. Når det er skrevet ned, regner feilsøkingen virkningen på målingene som vanlig.",
     what: "Hva som ble gjort",
-    sensor: "Sensor",
+    sensor: "Hvilken sensor",
     when: "Når, etter klokken på denne enheten (tomt for nå)",
     word: "Skriv ned",
   },
