@@ -70,6 +70,13 @@ def service(tmp_path_factory):
         yield live, address
 
 
+@pytest.fixture
+def fresh(tmp_path):
+    """A service to which no test has sent anything."""
+    with running(tmp_path) as live, serving(live) as address:
+        yield live, address
+
+
 @asynccontextmanager
 async def client_of(live, address, password=None):
     client = asyncua.Client(address, timeout=20)
@@ -107,30 +114,30 @@ def good(found):
     return found.StatusCode.is_good()
 
 
-def test_without_valid_input_a_number_has_a_bad_status_and_no_value(service):
-    path = "ace/bridle/bridle-1/tension_kn"
-    found = shown(service, path, lambda v: v.StatusCode.value == ua.StatusCodes.BadOutOfService)
+def test_without_valid_input_a_number_has_a_bad_status_and_no_value(fresh):
+    path, out = "ace/bridle/bridle-1/tension_kn", ua.StatusCodes.BadOutOfService
+    found = shown(fresh, path, lambda value: value.StatusCode.value == out)
     assert found.Value.Value is None
-    valid, reason = read(service, "ace/cage/valid", "ace/cage/reason")
+    valid, reason = read(fresh, "ace/cage/valid", "ace/cage/reason")
     assert valid.Value.Value is False
     assert reason.Value.Value
 
 
-def test_values_are_those_of_the_interface_with_their_times_and_units(service):
-    live, _ = service
+def test_values_are_those_of_the_interface_with_their_times_and_units(fresh):
+    live, _ = fresh
     live.post(buoy(), depth())
     state = eventually(live.state, lambda state: state["valid"])
     path = "ace/bridle/bridle-1/tension_kn"
-    shown(service, path, good)
+    shown(fresh, path, good)
     for bridle in state["bridles"]:
         names = ("tension_kn", "tension_lower_kn", "tension_upper_kn", "utilisation")
-        found = read(service, *(f"ace/bridle/{bridle['name']}/{name}" for name in names))
+        found = read(fresh, *(f"ace/bridle/{bridle['name']}/{name}" for name in names))
         tension = bridle["tension_kn"]
         values = [one.Value.Value for one in found]
         assert values == [*(tension[k] for k in ("mean", "lower", "upper")), bridle["utilisation"]]
         assert found[0].SourceTimestamp.replace(tzinfo=UTC) == datetime.fromisoformat(state["t"])
     speed, volume, measured, unknown, origin = read(
-        service,
+        fresh,
         "ace/water/current_speed_m_s",
         "ace/net/volume",
         "ace/depth/depth-2/measured_m",
@@ -147,7 +154,7 @@ def test_values_are_those_of_the_interface_with_their_times_and_units(service):
         node = client.get_node(ua.NodeId(path, space))
         return await (await node.get_child("0:EngineeringUnits")).read_value()
 
-    about = ask(service, unit)
+    about = ask(fresh, unit)
     # Kilonewton is B47 in UNECE's recommendation 20, as OPC UA Part 8 makes a number of it
     assert (about.NamespaceUri, about.UnitId) == (UNITS, (0x42 << 16) + (0x34 << 8) + 0x37)
     assert about.DisplayName.Text == "kN"
@@ -231,6 +238,7 @@ def test_a_client_is_told_of_each_change(service):
 
 def test_a_cage_that_is_no_longer_stepped_has_bad_status(service, monkeypatch):
     path = "ace/bridle/bridle-1/tension_kn"
+    service[0].post(buoy(), depth())
     shown(service, path, good)
     monkeypatch.setattr(_cage, "STALLED_S", -60.0)
     shown(service, path, lambda found: not good(found))
