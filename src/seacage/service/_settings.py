@@ -11,7 +11,7 @@ from pydantic_settings import BaseSettings, InitSettingsSource, SettingsConfigDi
 from seacage.conventions import InputError, parse_toml, read_text
 from seacage.service._auth._limits import Limits
 from seacage.service._mqtt._topics import Name
-from seacage.service._publish._opcua_server import OpcUaSettings
+from seacage.service._publish._opcua_settings import OpcUaSettings
 from seacage.service._publish._post import Webhook
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")

@@ -13,7 +13,7 @@ import typer
 from seacage.service._cli._console import Exit, Finding, guard, refusal, report, report_findings
 
 if TYPE_CHECKING:
-    from seacage.service._publish._opcua_server import OpcUaSettings
+    from seacage.service._publish._opcua_settings import OpcUaSettings
     from seacage.service._settings import Settings
 
 group = typer.Typer(help="Settings of the service.")

@@ -5,15 +5,14 @@ import threading
 from collections.abc import Callable, Iterator, Mapping
 from datetime import datetime
 from importlib import import_module
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import structlog
-from pydantic import BaseModel, ConfigDict, Field
 
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._cage import LiveCage
+from seacage.service._publish._opcua_settings import OpcUaSettings
 from seacage.service._schemas._alarms import alarm_state
 from seacage.service._schemas._quantities import QUANTITIES, Unit
 from seacage.service._schemas._state import State
@@ -25,19 +24,6 @@ _POLICIES = ("Basic256Sha256", "Aes128Sha256RsaOaep", "Aes256Sha256RsaPss")
 Value = float | str | None
 Place = tuple[str, ...]  # of a node, below its cage
 _log = structlog.get_logger(__name__)
-
-
-class OpcUaSettings(BaseModel):
-    """The section ``[opcua]``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    # Where it listens
-    host: str = "127.0.0.1"
-    port: int = Field(default=4840, ge=1, le=65535)
-    # PEM files of an RSA key: with them every client has to sign and to encrypt
-    certificate: Path | None = None
-    key: Path | None = None
 
 
 class OpcUaServer:

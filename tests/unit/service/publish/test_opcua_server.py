@@ -15,7 +15,8 @@ import pytest
 
 from running_service import Running, buoy, depth, eventually, running
 from seacage.service._live import _cage
-from seacage.service._publish._opcua_server import NAMESPACE, UNITS, OpcUaServer, OpcUaSettings
+from seacage.service._publish._opcua_server import NAMESPACE, UNITS, OpcUaServer
+from seacage.service._publish._opcua_settings import OpcUaSettings
 
 asyncua = pytest.importorskip("asyncua")
 ua = asyncua.ua
