@@ -1,9 +1,9 @@
-"""Learn a function from many cheap cases and a few dear ones, and see what the cheap ones gave.
+"""Learn a function from many cheap cases and a few costly ones, and see what the cheap ones give.
 
 python examples/04_two_fidelities.py
 
 The problem is that of Perdikaris et al. (2017), section 3(a): the two fidelities have no
-linear correlation to speak of, yet the dear one is a function of the cheap one.
+linear correlation to speak of, yet the costly one is a function of the cheap one.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ levels = [(x_cheap, cheap(x_cheap)), (x_dear, dear(x_dear))]
 x = np.linspace(0.0, 1.0, 500)[:, None]
 truth = dear(x)
 answers: dict[str, Prediction] = {
-    "14 dear cases alone": GaussianProcess().fit(*levels[1]).predict(x),
+    "14 costly cases alone": GaussianProcess().fit(*levels[1]).predict(x),
     "a constant ratio (AR1)": AR1().fit(levels).predict(x),
     "NARGP": NARGP().fit(levels).predict(x),
 }

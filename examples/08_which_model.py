@@ -1,4 +1,4 @@
-"""How many dear cases each model needs, where the fidelities are a ratio apart and a curve apart.
+"""How many costly cases each model needs, where the fidelities are a ratio apart and a curve apart.
 
 python examples/08_which_model.py
 """
@@ -27,14 +27,14 @@ def curve(x: np.ndarray) -> np.ndarray:
 
 random = np.random.default_rng(0)
 grid = random.uniform(size=(400, 2))
-# The cheap fidelity is learned once for each draw and lent to all that stand on it.
+# The cheap fidelity is fitted once for each draw and passed to all models that need it.
 draws = [
     (GaussianProcess().fit(x, cheap(x)), random.uniform(size=(max(SIZES), 2)))
     for x in random.uniform(size=(DRAWS, CHEAP, 2))
 ]
 for relation in (ratio, curve):
     print(f"RMSE, in shares of what varies: the fidelities are a {relation.__name__} apart")
-    print("  dear cases   alone     AR1   NARGP")
+    print("costly cases   alone     AR1   NARGP")
     for size in SIZES:
         errors = []
         for level_1, x in draws:

@@ -11,7 +11,8 @@ from io import StringIO
 from pathlib import Path
 from tokenize import COMMENT, DEDENT, ENDMARKER, INDENT, NEWLINE, NL, generate_tokens
 
-SRC, WEB = (Path(__file__).parents[1] / name for name in ("src/seacage", "web/src"))
+ROOT = Path(__file__).parents[1]
+SRC, WEB = ROOT / "src/seacage", ROOT / "web/src"
 NO_CODE = {COMMENT, DEDENT, ENDMARKER, INDENT, NEWLINE, NL}
 MODULES = {"twin": 20, "surrogates": 11, "studies": 15, "dynamics": 4, "service/_store": 16}
 CEILINGS = {
@@ -85,6 +86,9 @@ def count() -> Found:
         names = found["names with a word of our own"]
         names += [f"{path.name} {name}" for name in declared if has_own_word(name)]
         found["prose with a word of our own"] += [f"{path.name} {w}" for w in PROSE.findall(text)]
+    for path in (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")):  # decisions are of their time
+        words = PROSE.findall(path.read_text())
+        found["prose with a word of our own"] += [f"{path.name} {word}" for word in words]
     for name, modules in folders.items():
         found["modules too many in a folder"] += [name] * max(0, modules - MODULES.get(name, 20))
     found["classes twice in a room"] = [name for name, times in classes.items() if times > 1]
