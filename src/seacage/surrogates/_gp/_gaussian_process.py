@@ -17,7 +17,7 @@ from seacage.surrogates._gp._kernels import (
     StationaryKernel,
     restore_kernel,
 )
-from seacage.surrogates._gp._noise import NoiseName, noise_named, restore_noise
+from seacage.surrogates._gp._noise import CORRELATED, NoiseName, noise_named, restore_noise
 from seacage.surrogates._gp._posterior import Posterior, Process
 from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
@@ -29,8 +29,41 @@ CONDENSED = 1e-6  # share of the outputs' variance that condensing may leave out
 NEGLIGIBLE = 0.02  # weight of a process in an average
 SHARED_POINTS = 5.0  # weight of the shared variance against each output's own roughness, in points
 
+Times = Float[np.ndarray, " time"] | None
 Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]
 """Mean of each output, and variance, before the output's centre and amplitude."""
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """Times of cases whose noise is correlated, as shares of their whole time."""
+
+    begin: float = 0.0  # of the first case [s]
+    length: float = 0.0  # from the first to the last [s]; 0 where cases have no times
+
+    @classmethod
+    def of(cls, time: Times, noise: NoiseName) -> Self:
+        """Raises InputError: times with a noise of another kind, all alike, or not finite."""
+        if time is None:
+            return cls()
+        if noise != "white" or not np.ptp(time) > 0.0 or not np.isfinite(time).all():
+            raise InputError(
+                f"fit: times are given, with noise {noise!r}, from {np.min(time):g} to "
+                f"{np.max(time):g} s. Noise that is correlated in time takes noise='white' and "
+                "cases of several times, all finite."
+            )
+        return cls(float(np.min(time)), float(np.ptp(time)))
+
+    def standardise(self, time: Times, rows: int, *, what: str) -> Float[np.ndarray, " row"]:
+        """Zeros where cases have no times. Raises InputError: some are missing, or not finite."""
+        if not self.length:
+            return np.zeros(rows)
+        if time is None or np.shape(time) != (rows,) or not np.isfinite(time).all():
+            raise InputError(
+                f"{what}: the noise is correlated in time, so each of the {rows} cases needs its "
+                "time [s], a finite number."
+            )
+        return (time - self.begin) / self.length
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,14 +104,16 @@ class GaussianProcess:
         )
 
     def fit(
-        self, x: Float[np.ndarray, "n feature"], y: Float[np.ndarray, "n *output"], *, seed: int = 0
+        self,
+        x: Float[np.ndarray, "n feature"],  # one row per case
+        y: Float[np.ndarray, "n *output"],  # (n,) or (n, outputs)
+        *,
+        seed: int = 0,  # of the subset of points and of the random starts
+        # Of the cases [s], where their noise is correlated in time: white, and a part whose
+        # correlation falls exponentially
+        time: Times = None,
     ) -> "FittedGaussianProcess":
-        """Learn from inputs and outputs.
-
-        ``x``: one row per case.
-        ``y``: (n,) or (n, outputs).
-        ``seed``: of the subset of points and of the random starts.
-        """
+        """Learn from inputs and outputs."""
         x = check_inputs(x, what="GaussianProcess.fit")
         shape = "(rows,)" if np.ndim(y) == 1 else "(rows, outputs)"
         y = check_outputs(y, what="GaussianProcess.fit", rows=len(x), shape=shape)
@@ -90,6 +125,7 @@ class GaussianProcess:
             ensemble=self.ensemble,
             restarts=self.restarts,
             seed=seed,
+            time=time,
         )
         return replace(fitted, single=y.ndim == 1)
 
@@ -114,6 +150,7 @@ class FittedGaussianProcess:
     line: Float[np.ndarray, "feature output"]
     # Of each member: the standard deviation that its kernel's is a share of, over the amplitude
     factor: Float[np.ndarray, " member"]
+    clock: Clock = Clock()  # of the cases' times, where their noise is correlated
 
     @property
     def posterior(self) -> Posterior:
@@ -182,7 +219,11 @@ class FittedGaussianProcess:
         )
 
     def updated(
-        self, x: Float[np.ndarray, "new feature"], y: Float[np.ndarray, "new *output"]
+        self,
+        x: Float[np.ndarray, "new feature"],
+        y: Float[np.ndarray, "new *output"],
+        *,
+        time: Times = None,
     ) -> Self:
         """Conditioned on more cases, with the hyperparameters learned before.
 
@@ -191,6 +232,7 @@ class FittedGaussianProcess:
 
         ``x``: one row per new case.
         ``y``: (new,) or (new, outputs), as in the training.
+        ``time``: of the new cases [s], where the training had times.
         """
         x = self._standardise(x, what="updated")
         shape = "(rows,)" if self.single else "(rows, outputs)"
@@ -200,9 +242,9 @@ class FittedGaussianProcess:
                 f"updated: {y.shape[1]} outputs, but {len(self.centre)} were learned. "
                 "Give the outputs of the training, in the same order."
             )
-        y = y - self._trend(x)
+        y, when = y - self._trend(x), self.clock.standardise(time, len(x), what="updated")
         members = [
-            member.updated(x, y, amplitude=factor * self.amplitude)
+            member.updated(x, y, amplitude=factor * self.amplitude, time=when)
             for member, factor in zip(self.members, self.factor, strict=True)
         ]
         return replace(self, members=tuple(members))
@@ -214,6 +256,7 @@ class FittedGaussianProcess:
                 member.x[cases],
                 member.observations()[cases],
                 noise_factor=member.noise_factor[cases],
+                time=member.time[cases],
             )
             for member in self.members
         ]
@@ -231,6 +274,7 @@ class FittedGaussianProcess:
                 x,
                 member.observations() + (member.x - x) @ self.line,
                 noise_factor=member.noise_factor,
+                time=member.time,
             )
             for member in self.members
         ]
@@ -305,6 +349,8 @@ class FittedGaussianProcess:
             arrays["line"] = self.line
         if len(set(kernels)) > 1:
             arrays["factor"] = self.factor
+        if first.noise.name == CORRELATED:
+            arrays |= {"time": first.time, "clock": np.array([self.clock.begin, self.clock.length])}
         anchor = first.noise.anchor
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 
@@ -337,10 +383,13 @@ class FittedGaussianProcess:
         parameters = array(arrays, "log_parameters", len(share), max(sizes, default=None))
         log_noise = array(arrays, "log_noise", len(share), len(noise.prior().mean))
         noise_factor = array(arrays, "doubt", rows)
+        clock, time = Clock(), np.zeros(rows)
+        if noise.name == CORRELATED:
+            clock, time = Clock(*array(arrays, "clock", 2)), array(arrays, "time", rows)
         members = [
             Process(
                 kernel=kernel, log_parameters=own[:size], noise=noise, log_noise=own_noise
-            ).restore(x, weight, noise_factor=noise_factor, later=later)
+            ).restore(x, weight, noise_factor=noise_factor, time=time, later=later)
             for kernel, size, own, own_noise, weight in zip(
                 kernels, sizes, parameters, log_noise, weights, strict=True
             )
@@ -360,6 +409,7 @@ class FittedGaussianProcess:
             if settings.get("about_line", False)
             else np.zeros((width, outputs)),
             factor=factor,
+            clock=clock,
         )
 
     def _standardise(self, x: RowFeature, *, what: str) -> RowFeature:
@@ -449,6 +499,7 @@ def fit_process(
     restarts: int,
     seed: int,
     most: int | None = None,
+    time: Times = None,  # as for ``GaussianProcess.fit``
 ) -> FittedGaussianProcess:
     """Fit the hyperparameters, then condition on the outputs."""
     inputs, outputs = Scaling.of(x), Scaling.of(y)
@@ -464,17 +515,22 @@ def fit_process(
         # With noise of its own to learn none can stand for others
         if noise != "per-output" and y.shape[1] > MANY_OUTPUTS:
             likely = condense(likely)
-    scatter = noise_named(noise, standardised, outputs=likely.shape[1])
-    evidence = Evidence.of(kernel, scatter, standardised, likely)
+    clock = Clock.of(time, noise)
+    when = clock.standardise(time, len(x), what="fit")
+    name = noise if time is None else CORRELATED
+    scatter = noise_named(name, standardised, outputs=likely.shape[1])
+    evidence = Evidence.of(kernel, scatter, standardised, likely, when)
     mode = most_probable(evidence, restarts=restarts, seed=seed, most=most)
     hyperparameters, wider = mode.log_parameters[None], 1.0
-    few = likely.size <= FEW
+    few = evidence.independent(mode.log_parameters) <= FEW
     if ensemble == "always" or (ensemble == "auto" and few):
         hyperparameters, wider = draw_members(mode, seed=seed), widening(len(y))
     # noise factors are of all points, or there are none
     noise_factor = evidence.noise_factor if most else mode.evidence.noise_factor
     members = [
-        evidence.process(log_parameters).condition(standardised, rest, noise_factor=noise_factor)
+        evidence.process(log_parameters).condition(
+            standardised, rest, noise_factor=noise_factor, time=when
+        )
         for log_parameters in hyperparameters
     ]
     share = np.full(len(members), 1.0 / len(members))
@@ -494,6 +550,7 @@ def fit_process(
         single=y.shape[1] == 1,
         line=line,
         factor=np.ones(len(members)),
+        clock=clock,
     )
 
 

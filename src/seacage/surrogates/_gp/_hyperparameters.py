@@ -50,6 +50,7 @@ class Evidence(Rows):
     x: Float[np.ndarray, "n feature"]
     y: Float[np.ndarray, "n output"]
     noise_factor: Float[np.ndarray, " n"]  # factor on each point's noise
+    time: Float[np.ndarray, " n"]  # of each point, from 0 to 1, where its noise is correlated
     prior: Prior  # of all hyperparameters
 
     @classmethod
@@ -59,10 +60,18 @@ class Evidence(Rows):
         noise: AbstractNoise,
         x: Float[np.ndarray, "n feature"],
         y: Float[np.ndarray, "n output"],
+        time: Float[np.ndarray, " n"] | None = None,
     ) -> Self:
-        """With all noise factors at 1."""
-        prior = kernel.prior(x.shape[1]) + noise.prior()
-        return cls(kernel=kernel, noise=noise, x=x, y=y, noise_factor=np.ones(len(x)), prior=prior)
+        """With all noise factors at 1, and all times at 0 where there are none."""
+        return cls(
+            kernel=kernel,
+            noise=noise,
+            x=x,
+            y=y,
+            noise_factor=np.ones(len(x)),
+            time=np.zeros(len(x)) if time is None else time,
+            prior=kernel.prior(x.shape[1]) + noise.prior(),
+        )
 
     def bounds(self) -> Float[np.ndarray, "parameter 2"]:
         """Least and largest of each; within them the covariance can be factorised."""
@@ -81,6 +90,16 @@ class Evidence(Rows):
         """The process with these hyperparameters."""
         own, noise = self.split(log_parameters)
         return Process(kernel=self.kernel, log_parameters=own, noise=self.noise, log_noise=noise)
+
+    def independent(self, log_parameters: PerParameter) -> float:
+        """Number of observations of independent noise whose mean is as well known as of these."""
+        count, noise = len(self.x), self.split(log_parameters)[1]
+        slow = self.noise.covariance(noise, self.time)
+        if slow is None:
+            return count * self.y.shape[1]
+        each = float(self.noise.variance(noise, self.x[:1])[0, 0])
+        white = count * (each - slow.value[0, 0])
+        return self.y.shape[1] * count**2 * each / float(white + slow.value.sum())
 
     def loss(self, log_parameters: PerParameter) -> tuple[float, PerParameter]:
         """Negative log posterior of the hyperparameters, and its gradient.
@@ -101,7 +120,9 @@ class Evidence(Rows):
         outputs = self.y.shape[1]
         covariance = self.kernel.evaluate(kernel, self.x, self.x)
         scale, pull_noise = self.noise.with_pullback(noise, self.x)
-        factor = Cholesky.of(covariance.value, scale * self.noise_factor)
+        slow = self.noise.covariance(noise, self.time)
+        together = covariance.value if slow is None else covariance.value + slow.value
+        factor = Cholesky.of(together, scale * self.noise_factor)
         precision = factor.inverse()
         weights = precision @ self.y
         value = 0.5 * np.sum(self.y * weights) + outputs * np.sum(np.log(np.diag(factor.lower)))
@@ -109,6 +130,8 @@ class Evidence(Rows):
         adjoint = 0.5 * (outputs * precision - weights @ weights.T)
         of_noise = pull_noise(np.diag(adjoint) * self.noise_factor)
         adjoint[np.diag_indices_from(adjoint)] *= 1.0 + JITTERS[0]
+        if slow is not None:
+            of_noise = of_noise + slow.pull(adjoint)
         return float(value), np.append(covariance.pull(adjoint), of_noise)
 
     def _misfit_per_output(self, kernel: PerKernel, noise: PerNoise) -> tuple[float, PerParameter]:

@@ -1,4 +1,4 @@
-"""Noise of measurements: alike everywhere, by output, by input, or with outliers."""
+"""Noise of measurements: alike everywhere, by output, by input, with outliers, or in time."""
 
 import math
 from abc import ABC, abstractmethod
@@ -11,7 +11,7 @@ import scipy
 from jaxtyping import Float
 
 from seacage.conventions import ModelError
-from seacage.surrogates._gp._kernels import Prior, StationaryKernel
+from seacage.surrogates._gp._kernels import Evaluation, Prior, StationaryKernel
 
 NFeature = Float[np.ndarray, "n feature"]
 PerN = Float[np.ndarray, " n"]
@@ -19,12 +19,15 @@ PerParameter = Float[np.ndarray, " parameter"]
 RowFeature = Float[np.ndarray, "row feature"]
 RowOutput = Float[np.ndarray, "row output"]
 NoiseName = Literal["white", "per-output", "by-input", "student-t"]
+CORRELATED = "correlated"  # name of the noise of cases whose times are given
 # Of the logarithm of the noise's share of the outputs' unit variance
 NOISE_PRIOR = (math.log(1e-5), 2.5)
 NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
 FREEDOM = 4.0  # degrees of freedom of Student's t: outliers are common, and the variance exists
 SETTLING = 50  # steps of the fixed-point iteration for a case's noise factor
 ANCHORS = 20  # places that noise by input is learned at, at most
+# Of the log memory of noise that is correlated in time, in shares of the time of all cases
+MEMORY_PRIOR = (math.log(0.05), 2.0)
 SWING = 1.5  # prior sd of the log variance of noise by input, about its mean
 # From the loss's gradient in each case's noise to its gradient in each log parameter
 PullDiagonal = Callable[[PerN], PerParameter]
@@ -33,7 +36,7 @@ PullDiagonal = Callable[[PerN], PerParameter]
 class AbstractNoise(ABC):
     """Variance of independent noise, as a share of the outputs' unit variance."""
 
-    name: ClassVar[NoiseName]  # under which a user asks for it and a saved model finds it again
+    name: ClassVar[str]  # under which a user asks for it and a saved model finds it again
 
     @abstractmethod
     def prior(self) -> Prior:
@@ -46,6 +49,13 @@ class AbstractNoise(ABC):
     @abstractmethod
     def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
         """Scale of each training case's noise, before its noise factor, and the pullback."""
+
+    def covariance(self, log_parameters: PerParameter, time: PerN) -> Evaluation | None:  # noqa: ARG002
+        """Of the noise of cases with one another, beside that of each; None where there is none.
+
+        ``time``: of each case, from 0 to 1.
+        """
+        return None
 
     @property
     def sizes(self) -> int:
@@ -62,7 +72,7 @@ class AbstractNoise(ABC):
 class WhiteNoise(AbstractNoise):
     """The same everywhere, for all outputs alike."""
 
-    name: ClassVar[NoiseName] = "white"
+    name: ClassVar[str] = "white"
 
     def prior(self) -> Prior:
         return Prior.of(NOISE_PRIOR)
@@ -76,6 +86,42 @@ class WhiteNoise(AbstractNoise):
 
 
 @dataclass(frozen=True, slots=True)
+class CorrelatedNoise(WhiteNoise):
+    """White noise, and a part whose correlation falls exponentially with time.
+
+    At even steps of time the second part is an AR(1) series. Both are noise: a prediction without
+    noise is of neither. Source: Rasmussen & Williams (2006), section 4.2.1 (Ornstein-Uhlenbeck).
+    """
+
+    name: ClassVar[str] = CORRELATED
+
+    @property
+    def sizes(self) -> int:
+        return 2
+
+    def prior(self) -> Prior:
+        return Prior.of(NOISE_PRIOR, NOISE_PRIOR, MEMORY_PRIOR)
+
+    def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
+        return np.full((len(x), 1), np.exp(log_parameters[:2]).sum())
+
+    def with_pullback(self, log_parameters: PerParameter, x: NFeature) -> tuple[PerN, PullDiagonal]:
+        noise, pull = WhiteNoise.with_pullback(self, log_parameters, x)
+        return noise, lambda adjoint: np.append(pull(adjoint), np.zeros(2))
+
+    def covariance(self, log_parameters: PerParameter, time: PerN) -> Evaluation:
+        _, variance, memory = np.exp(log_parameters)
+        apart = np.abs(time[:, None] - time) / memory
+        value = variance * np.exp(-apart)
+
+        def pull(adjoint: np.ndarray) -> PerParameter:
+            weight = adjoint * value
+            return np.array([0.0, weight.sum(), np.sum(weight * apart)])
+
+        return Evaluation(value, np.zeros_like, pull)
+
+
+@dataclass(frozen=True, slots=True)
 class StudentNoise(WhiteNoise):
     """Student's t with four degrees of freedom, as a scale mixture of Gaussians.
 
@@ -86,7 +132,7 @@ class StudentNoise(WhiteNoise):
     69:123-141.
     """
 
-    name: ClassVar[NoiseName] = "student-t"
+    name: ClassVar[str] = "student-t"
 
     def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.full((len(x), 1), np.exp(log_parameters[0]) * FREEDOM / (FREEDOM - 2.0))
@@ -96,7 +142,7 @@ class StudentNoise(WhiteNoise):
 class NoisePerOutput(AbstractNoise):
     """The same everywhere, of another size for each output."""
 
-    name: ClassVar[NoiseName] = "per-output"
+    name: ClassVar[str] = "per-output"
 
     outputs: int
 
@@ -125,7 +171,7 @@ class NoiseByInput(AbstractNoise):
     of the noise held by a few inducing inputs, at its most probable value.
     """
 
-    name: ClassVar[NoiseName] = "by-input"
+    name: ClassVar[str] = "by-input"
 
     places: Float[np.ndarray, "anchor feature"]
 
@@ -174,6 +220,8 @@ def restore_noise(
             return StudentNoise()
         case "per-output":
             return NoisePerOutput(outputs)
+        case "correlated":
+            return CorrelatedNoise()
         case "by-input":
             return NoiseByInput(anchor())
         case _:

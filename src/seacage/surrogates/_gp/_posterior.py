@@ -12,6 +12,7 @@ from seacage.surrogates._gp._factor import Cholesky, Later, Spectrum
 from seacage.surrogates._gp._kernels import AbstractKernel
 from seacage.surrogates._gp._noise import (
     AbstractNoise,
+    CorrelatedNoise,
     NoisePerOutput,
     StudentNoise,
     noise_factor_of_new,
@@ -44,22 +45,25 @@ class Process:
     noise: AbstractNoise
     log_noise: Float[np.ndarray, " noise"]
 
-    def condition(self, x: NFeature, y: NOutput, *, noise_factor: PerN) -> "Posterior":
+    def condition(
+        self, x: NFeature, y: NOutput, *, noise_factor: PerN, time: PerN | None = None
+    ) -> "Posterior":
         """Condition on outputs of zero mean; a posterior forgets the points that it had.
 
         Raises InputError: the covariance has no factor in float64.
         """
+        time = np.zeros(len(x)) if time is None else time
         try:
-            factor = self._factorise(x, noise_factor)
+            factor = self._factorise(x, noise_factor, time)
         except np.linalg.LinAlgError as error:
             raise InputError(
                 f"{len(x)} cases give a covariance that is not positive definite. Look for "
                 "features or outputs that are too large by many orders of magnitude."
             ) from error
-        return self._posterior(x, noise_factor, factor.solve(y), factor)
+        return self._posterior(x, noise_factor, time, factor.solve(y), factor)
 
     def restore(
-        self, x: NFeature, weights: NOutput, *, noise_factor: PerN, later: bool = False
+        self, x: NFeature, weights: NOutput, *, noise_factor: PerN, time: PerN, later: bool = False
     ) -> "Posterior":
         """The posterior that was saved; the factor is cheaper to make than to store.
 
@@ -68,27 +72,31 @@ class Process:
         Raises ModelError: the covariance has no factor, so this was never a fitted model.
         """
         if later:
-            made = Later(lambda: self._factorise(x, noise_factor))
-            return self._posterior(x, noise_factor, weights, made)
+            made = Later(lambda: self._factorise(x, noise_factor, time))
+            return self._posterior(x, noise_factor, time, weights, made)
 
         broken = "The saved model's covariance is not positive definite. Train the model again."
         try:
             with np.errstate(over="ignore", invalid="ignore"):
-                factor = self._factorise(x, noise_factor)
+                factor = self._factorise(x, noise_factor, time)
                 cross = self.kernel.covariance(self.log_parameters, x[:1], x)
                 known = factor.variance_reduction(cross)
         except (np.linalg.LinAlgError, ValueError) as error:
             raise ModelError(broken) from error
         if not np.isfinite(known).all():
             raise ModelError(broken)
-        return self._posterior(x, noise_factor, weights, factor)
+        return self._posterior(x, noise_factor, time, weights, factor)
 
-    def _factorise(self, x: NFeature, noise_factor: PerN) -> Factor:
+    def _factorise(self, x: NFeature, noise_factor: PerN, time: PerN) -> Factor:
         """Of the covariance of points with noise."""
         if isinstance(self.noise, NoisePerOutput):
             covariance = self.kernel.covariance(self.log_parameters, x, x)
             return Spectrum.of(covariance, np.exp(self.log_noise))
         noise = self.noise.with_pullback(self.log_noise, x)[0] * noise_factor
+        slow = self.noise.covariance(self.log_noise, time)
+        if slow is not None:
+            covariance = self.kernel.covariance(self.log_parameters, x, x) + slow.value
+            return Cholesky.of(covariance, noise)
         quotient = self.kernel.quotient(x)
         if quotient is None or np.ptp(noise) > 0.0:
             return Cholesky.of(self.kernel.covariance(self.log_parameters, x, x), noise)
@@ -97,7 +105,7 @@ class Process:
         return Orbits.of(covariance, float(noise[0]), quotient)
 
     def _posterior(
-        self, x: NFeature, noise_factor: PerN, weights: NOutput, factor: Factor
+        self, x: NFeature, noise_factor: PerN, time: PerN, weights: NOutput, factor: Factor
     ) -> "Posterior":
         return Posterior(
             kernel=self.kernel,
@@ -106,6 +114,7 @@ class Process:
             log_noise=self.log_noise,
             x=x,
             noise_factor=noise_factor,
+            time=time,
             weights=weights,
             factor=factor,
         )
@@ -118,6 +127,7 @@ class Posterior(Process):
     x: NFeature  # standardised inputs
     # Factor on the noise of each point; other than 1 for Student's t alone
     noise_factor: PerN
+    time: PerN  # of each point, where its noise is correlated in time
     # Inverse covariance times outputs, so that the mean is one product
     weights: NOutput
     factor: Factor  # of the covariance with noise
@@ -205,7 +215,9 @@ class Posterior(Process):
         """The outputs that it was conditioned on."""
         return self.factor.observations(self.weights)
 
-    def updated(self, x: NewFeature, y: NewOutput, *, amplitude: PerOutput) -> "Posterior":
+    def updated(
+        self, x: NewFeature, y: NewOutput, *, amplitude: PerOutput, time: PerNew | None = None
+    ) -> "Posterior":
         """Conditioned on more points, with the same hyperparameters.
 
         The Cholesky factor is extended, in O(n^2) per point; noise unlike between the outputs
@@ -216,13 +228,14 @@ class Posterior(Process):
         new_factor = self._new_noise_factors(x, y, amplitude)
         all_x, all_y = np.concatenate([self.x, x]), np.concatenate([self.observations(), y])
         noise_factor = np.append(self.noise_factor, new_factor)
-        if isinstance(self.factor, Cholesky):
+        all_time = np.append(self.time, np.zeros(len(x)) if time is None else time)
+        if isinstance(self.factor, Cholesky) and not isinstance(self.noise, CorrelatedNoise):
             with suppress(np.linalg.LinAlgError):  # otherwise the whole has a larger jitter
                 noise = self.noise.with_pullback(self.log_noise, x)[0] * new_factor
                 corner = self.kernel.covariance(self.log_parameters, x, x)
                 factor = self.factor.extended(self.cross(x), corner, noise)
-                return self._posterior(all_x, noise_factor, factor.solve(all_y), factor)
-        return self.condition(all_x, all_y, noise_factor=noise_factor)
+                return self._posterior(all_x, noise_factor, all_time, factor.solve(all_y), factor)
+        return self.condition(all_x, all_y, noise_factor=noise_factor, time=all_time)
 
     def output(self, index: int) -> "Posterior":
         """One output alone, which shares the factor."""

@@ -94,6 +94,8 @@ class AbstractMultifidelity(ABC):
         # Cases of the highest level that are held out together to weigh its models, where it has
         # several; None for ten folds at random
         folds: Folds | None = None,
+        # Of the cases of the highest level [s], where their noise is correlated in time
+        time: PerN | None = None,
     ) -> "FittedNARGP":
         """Learn each level from its own cases.
 
@@ -130,6 +132,7 @@ class AbstractMultifidelity(ABC):
                     slope=slope,
                     restarts=self.restarts,
                     seed=seeds[index],
+                    time=time if index == len(cases) - 1 else None,
                 )
                 for kernel in kernels
             ]
@@ -309,7 +312,9 @@ class FittedNARGP:
             below = _central_differences(self.lower, x, step=step)
         return propagate_slope(self._steps(level), x, below) if level > 1 else below.mean_slope
 
-    def updated(self, x: RowFeature, y: PerRow, *, level: int | None = None) -> Self:
+    def updated(
+        self, x: RowFeature, y: PerRow, *, level: int | None = None, time: PerRow | None = None
+    ) -> Self:
         """Conditioned on more cases of a level above the first, without learning anew.
 
         Levels below stay the same objects. Levels above were fitted at the mean of this one, so
@@ -317,12 +322,13 @@ class FittedNARGP:
 
         ``x``, ``y``: new cases; the level below is asked for its mean there.
         ``level``: from 2 to ``levels``, which None means.
+        ``time``: of the new cases [s], where the level was fitted with times.
         """
         level = self._level(level, lowest=2, what="updated")
         x = check_inputs(x, what="updated", width=self._width)
         y = check_outputs(y, what="updated", rows=len(x), shape="(rows,)", least=1)
         below = self.predict(x, level=level - 1).mean
-        process = self.upper[level - 2].updated(np.column_stack([x, below]), y)
+        process = self.upper[level - 2].updated(np.column_stack([x, below]), y, time=time)
         fitted = self._replaced(level, process)
         if not self.nested:
             for above in range(level + 1, self.levels + 1):

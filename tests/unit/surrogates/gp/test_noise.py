@@ -17,6 +17,7 @@ from seacage.surrogates import (
 from seacage.surrogates._gp._noise import (
     FREEDOM,
     AbstractNoise,
+    CorrelatedNoise,
     NoiseByInput,
     NoisePerOutput,
     StudentNoise,
@@ -185,3 +186,113 @@ def test_an_uncertain_noise_is_settled_where_its_own_residual_calls_for_it() -> 
     again = noise_factor_of(kept**2 * square + kept * variance, scale=0.5, outputs=1)
     np.testing.assert_allclose(noise_factor, again, rtol=1e-9)
     assert noise_factor[0] < 1.0 < noise_factor[2]
+
+
+def correlated(seed: int, memory: float) -> np.ndarray:
+    """An AR(1) series of unit variance whose correlation falls by e over ``memory`` steps."""
+    random, keep = np.random.default_rng(seed), np.exp(-1.0 / memory)
+    series = random.standard_normal(len(LINE))
+    for step in range(1, len(series)):
+        series[step] = keep * series[step - 1] + np.sqrt(1.0 - keep**2) * series[step]
+    return series
+
+
+def case_of_correlated_noise(seed: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Inputs in no order of time, their times, and outputs with noise that lasts in time."""
+    x = np.random.default_rng(seed).permutation(LINE)
+    return x, 60.0 * np.arange(len(x)), np.sin(6.0 * x[:, 0]) + 0.3 * correlated(seed, 10.0)
+
+
+def test_errors_are_as_large_as_predicted_where_the_noise_lasts_in_time() -> None:
+    size: dict[str, list[float]] = {"white": [], "timed": []}
+    for seed in range(20):
+        x, time, y = case_of_correlated_noise(seed)
+        for name, when in (("white", None), ("timed", time)):
+            answer = (
+                GaussianProcess(restarts=0, ensemble="never")
+                .fit(x, y, time=when)
+                .predict(LINE[::20])
+            )
+            size[name] += [*((TRUTH[::20] - answer.mean) / answer.std)]
+    # The mean of such a record errs by about 0.3 √(2 · 10 / 200) = 0.1 for certain, which white
+    # noise takes for 0.3 / √200 = 0.02.
+    assert np.sqrt(np.mean(np.square(size["white"]))) > 2.0
+    assert np.sqrt(np.mean(np.square(size["timed"]))) < 1.4
+
+
+def test_the_whole_noise_is_found_where_it_lasts_in_time() -> None:
+    x, time, y = case_of_correlated_noise(0)
+    process = GaussianProcess(restarts=0, ensemble="never").fit(x, y, time=time)
+    # The variance of 200 steps with a memory of ten, some 10 independent ones: to a half.
+    assert np.sqrt(process.noise[0]) == pytest.approx(0.3, rel=0.5)
+    assert process.noise_at(x[:3]) == pytest.approx(process.noise[0])
+
+
+def test_times_say_nothing_where_the_noise_is_white() -> None:
+    y = TRUTH + 0.2 * scatter(3)
+    shuffled = np.random.default_rng(1).permutation(len(y)) * 60.0
+    plain = GaussianProcess(restarts=0, ensemble="never").fit(LINE, y)
+    timed = GaussianProcess(restarts=0, ensemble="never").fit(LINE, y, time=shuffled)
+    np.testing.assert_allclose(timed.predict(LINE).mean, plain.predict(LINE).mean, atol=0.03)
+    assert timed.noise == pytest.approx(plain.noise, rel=0.1)
+
+
+def test_the_pullback_of_correlated_noise_agrees_with_finite_differences() -> None:
+    noise, time = CorrelatedNoise(), np.array([0.0, 0.1, 0.11, 0.5, 1.0])
+    at = np.array([-2.0, -1.0, -1.5])
+    adjoint = scatter(0)[:25].reshape(5, 5)
+    adjoint = adjoint + adjoint.T
+
+    def value(log_parameters: np.ndarray) -> float:
+        return float(np.sum(adjoint * noise.covariance(log_parameters, time).value))
+
+    slopes = [(value(at + 1e-6 * one) - value(at - 1e-6 * one)) / 2e-6 for one in np.eye(3)]
+    pulled = noise.covariance(at, time).pull(adjoint)
+    np.testing.assert_allclose(pulled, slopes, rtol=1e-6, atol=1e-9)
+
+
+def test_noise_in_time_is_saved_updated_and_left_out() -> None:
+    x, time, y = case_of_correlated_noise(2)
+    whole = GaussianProcess(restarts=0, ensemble="never").fit(x, y, time=time)
+    back = decode(*encode(whole))
+    assert np.array_equal(back.predict(LINE).mean, whole.predict(LINE).mean)
+    assert np.array_equal(back.predict(LINE).std, whole.predict(LINE).std)
+
+    first = np.arange(len(x)) < 150
+    grown = whole.kept(first).updated(x[~first], y[~first], time=time[~first])
+    np.testing.assert_allclose(grown.predict(LINE).mean, whole.predict(LINE).mean, rtol=1e-9)
+    np.testing.assert_allclose(grown.predict(LINE).std, whole.predict(LINE).std, rtol=1e-9)
+    again = back.updated(x[:5], y[:5], time=time[:5] + 1e6)
+    assert np.isfinite(again.predict(LINE).std).all()
+
+
+def test_times_that_do_not_fit_are_refused() -> None:
+    x, time, y = case_of_correlated_noise(2)
+    with pytest.raises(InputError, match="noise 'student-t'"):
+        GaussianProcess(noise="student-t").fit(x, y, time=time)
+    with pytest.raises(InputError, match="several times"):
+        GaussianProcess().fit(x, y, time=np.zeros(len(x)))
+    with pytest.raises(InputError, match="each of the 200 cases needs its time"):
+        GaussianProcess().fit(x, y, time=time[1:])
+    with pytest.raises(InputError, match="all finite"):
+        GaussianProcess().fit(x, y, time=np.where(time > 0.0, time, np.nan))
+    whole = GaussianProcess(restarts=0, ensemble="never").fit(x, y, time=time)
+    with pytest.raises(InputError, match="updated: the noise is correlated"):
+        whole.updated(x[:2], y[:2])
+
+
+def test_a_level_of_fidelity_may_have_noise_that_lasts_in_time() -> None:
+    low, stds = (LINE[::5], 0.5 * np.sin(6.0 * LINE[::5, 0])), []
+    x, time, y = case_of_correlated_noise(0)
+    for when in (None, time):
+        fitted = NARGP(restarts=0, ensemble="never").fit([low, (x, y)], time=when)
+        stds.append(fitted.predict(LINE).std.mean())
+        assert np.array_equal(decode(*encode(fitted)).predict(LINE).std, fitted.predict(LINE).std)
+    assert stds[1] > 2.0 * stds[0]
+
+
+def test_hyperparameters_are_drawn_where_few_readings_are_independent() -> None:
+    x, time, y = case_of_correlated_noise(4)
+    # 200 steps with a memory of ten are worth some ten; those of white noise are worth themselves.
+    assert len(GaussianProcess(restarts=0).fit(x, y, time=time).members) > 1
+    assert len(GaussianProcess(restarts=0).fit(x, TRUTH + 0.3 * scatter(0)).members) == 1
