@@ -125,7 +125,7 @@ def _check_it_learns(
 
 def _check_far(fitted: FittedSurrogate, x: Inputs, *, extrapolates: bool) -> None:
     if not extrapolates:
-        _check_refused(lambda: fitted.predict(x + 20.0), error=InputError, about="far cases")
+        check_refused(lambda: fitted.predict(x + 20.0), error=InputError, about="far cases")
         return
     near, far = fitted.predict(x).std.mean(), fitted.predict(x + 20.0).std.mean()
     assert far > 3.0 * near, "it is as sure far from its cases as among them"
@@ -163,7 +163,7 @@ def _check_saving(fitted: FittedSurrogate, unseen: Inputs) -> None:
         lost = {other: kept for other, kept in read.items() if other != name}
         unfinished = np.full_like(values, np.nan)
         for damaged in (lost, lost | {name: values[None]}, lost | {name: unfinished}):
-            _check_refused(
+            check_refused(
                 lambda damaged=damaged: type(fitted).from_arrays(settings, damaged),
                 error=ModelError,
                 about=f"a damaged array {name}",
@@ -176,15 +176,15 @@ def _check_refusals(
     missing = x.copy()
     missing[3, 1] = np.nan
     wide = np.column_stack([x, x])
-    _check_refused(lambda: fitted.predict(missing), error=InputError, about="NaN in x")
-    _check_refused(lambda: fitted.predict(wide), error=InputError, about="too many features")
-    _check_refused(lambda: make_fitted(missing, y, 0), error=InputError, about="NaN in x")
+    check_refused(lambda: fitted.predict(missing), error=InputError, about="NaN in x")
+    check_refused(lambda: fitted.predict(wide), error=InputError, about="too many features")
+    check_refused(lambda: make_fitted(missing, y, 0), error=InputError, about="NaN in x")
     gap = y.copy()
     gap[5] = np.inf
-    _check_refused(lambda: make_fitted(x, gap, 0), error=InputError, about="infinity in y")
+    check_refused(lambda: make_fitted(x, gap, 0), error=InputError, about="infinity in y")
 
 
-def _check_refused(call: Callable[[], object], *, error: type[Exception], about: str) -> None:
+def check_refused(call: Callable[[], object], *, error: type[Exception], about: str) -> None:
     try:
         call()
     except error as refusal:

@@ -54,6 +54,7 @@ def doctor(
         f"Port {port}": _port(port),
         "Demonstration": _demonstration(data),
         **{f"Extra {name}": _extra(name) for name in _EXTRAS},
+        **_extensions(),
     }
     findings = [Finding(what=what, state=one[0], message=one[1]) for what, one in found.items()]
     report_findings("doctor", findings, code=Exit.FAILED)
@@ -133,6 +134,21 @@ def _extra(name: str) -> Found:
     if missing:
         return "absent", f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
     return "ok", ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
+
+
+def _extensions() -> dict[str, Found]:
+    """What other packages add, each loaded."""
+    from seacage.conventions import EXTENSION_GROUPS, InputError, extension_names, load_extension
+
+    found = dict[str, Found]()
+    for group in EXTENSION_GROUPS:
+        for name in extension_names(group):
+            try:
+                one: Found = "ok", load_extension(group, name, object).source
+            except InputError as error:
+                one = "wrong", str(error)
+            found[f"{group.replace('_', ' ').removesuffix('s').capitalize()} {name}"] = one
+    return found
 
 
 def _version(package: str) -> str:

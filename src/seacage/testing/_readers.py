@@ -1,0 +1,92 @@
+"""What every reader of files promises, whoever wrote it."""
+
+import os
+import time
+from collections.abc import Mapping
+from datetime import datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from seacage.conventions import Flag, RecordError
+from seacage.records import Reader, Record, check_record, moment
+from seacage.testing._surrogates import check_refused
+
+_CUTS = 24
+
+
+def check_reader(
+    reader: Reader, example: Path, *, first: datetime, values: Mapping[str, float]
+) -> None:
+    """Hold a reader to what the commands rely on; an assertion names the first broken promise.
+
+    Parameters
+    ----------
+    reader
+        As its entry point names it.
+    example
+        A file of the format, with at least three rows of good values.
+    first
+        Time of its first row, which says its zone.
+    values
+        Of its first row, by door key: what a person reads in the file, in the key's unit.
+    """
+    record = reader.read(example, "example")
+    assert isinstance(record, Record), f"it gives a {type(record).__name__}, not a Record"
+    assert record.stream == "example", f"the stream is called {record.stream}, not as asked"
+    assert len(record) > 2, f"the example has {len(record)} rows; three are needed"
+    assert moment(record.time[0]) == first, f"the first time is {record.time[0]} UTC, not {first}"
+    found = {key: float(column[0]) for key, column in record.values.items()}
+    assert found.keys() == values.keys(), f"it reads {sorted(found)}, not {sorted(values)}"
+    for key, value in values.items():
+        np.testing.assert_allclose(found[key], value, rtol=1e-6, err_msg=f"first {key}")
+    for key, flags in check_record(record).flags.items():
+        bad = np.mean(flags == Flag.FAIL)
+        assert bad < 0.5, f"{bad:.0%} of {key} fail the checks: is it in its key's unit?"
+    if reader.recognises is not None:
+        assert reader.recognises(example.read_bytes()[:4096]), "it does not recognise the example"
+        for other in (b"", b"time,hs_m\n2020-01-01T00:00:00Z,1.0\n", bytes(range(256))):
+            assert not reader.recognises(other), f"it takes {other[:20]!r} for its own format"
+    assert reader.endings or reader.recognises, "no file is ever given to it"
+    assert all(one == one.lower() and one[:1] == "." for one in reader.endings), "an ending"
+    _check_clock(reader, example, record)
+    with TemporaryDirectory() as folder:
+        _check_broken_files(reader, example.read_bytes(), record, Path(folder) / example.name)
+
+
+def _check_clock(reader: Reader, example: Path, record: Record) -> None:
+    """Read again, on a computer whose clock is set elsewhere."""
+    zone = os.environ.get("TZ")
+    try:
+        os.environ["TZ"] = "Asia/Kathmandu"
+        time.tzset()
+        again = reader.read(example, "example")
+    finally:
+        os.environ.pop("TZ") if zone is None else os.environ.update(TZ=zone)
+        time.tzset()
+    assert again.sha256 == record.sha256, "read twice, or in another time zone, it differs"
+
+
+def _check_broken_files(reader: Reader, whole: bytes, record: Record, path: Path) -> None:
+    for about, content in (("an empty file", b""), ("noise", bytes(range(256)) * 16)):
+        path.write_bytes(content)
+        check_refused(lambda: reader.read(path, "example"), error=RecordError, about=about)
+    for size in np.linspace(1, len(whole) - 2, _CUTS, dtype=int):
+        path.write_bytes(whole[:size])
+        try:
+            cut = reader.read(path, "example")
+        except RecordError:
+            continue
+        rows = np.isin(record.time, cut.time)
+        assert rows.sum() >= len(cut) - 1, f"cut after {size} bytes it has times of its own"
+        sure = np.isin(cut.time, record.time[:-1]) & (np.arange(len(cut)) < len(cut) - 1)
+        for key, column in cut.values.items():
+            same = record.values[key][np.isin(record.time, cut.time[sure])]
+            np.testing.assert_array_equal(column[sure], same, err_msg=f"{key}, cut at {size}")
+            last = record.values[key][record.time == cut.time[-1]]
+            doubted = cut.flags[key][-1] in {Flag.SUSPECT, Flag.FAIL, Flag.MISSING}
+            assert doubted or np.array_equal(last, column[-1:], equal_nan=True), (
+                f"cut after {size} bytes, a part of a number is a good {key}; flag the last row "
+                "of a file that ends without a line end"
+            )
