@@ -11,6 +11,7 @@ from seacage.conventions._errors import InputError, SeacageError
 Group = Literal["screen_laws", "surrogates", "readers"]
 """What can be added: an entry point's group, after ``seacage.``."""
 EXTENSION_GROUPS: tuple[Group, ...] = ("screen_laws", "surrogates", "readers")
+"""All of them."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +40,7 @@ def load_extension(group: Group, name: str, kind: type, ours: tuple[str, ...] = 
         known = ", ".join((*ours, *extension_names(group))) or "none"
         raise InputError(f"No {what}; there are: {known}. Choose one, or install its package.")
     sources = [f"{one.dist.name} {one.dist.version}" if one.dist else one.value for one in found]
-    title = f"{what} of {' and '.join(sources)}"
+    title = f"{what} of {' and '.join(sorted(sources))}"
     if len(found) > 1:
         raise InputError(f"There is a {title}. Uninstall all of these packages but one.")
     value = call_extension(title, found[0].load)

@@ -23,6 +23,11 @@ class FittedSurrogate(Protocol):
         """Answer at each row of features."""
         ...
 
+
+@runtime_checkable
+class SavedSurrogate(FittedSurrogate, Protocol):
+    """What the suite needs of one that can be saved."""
+
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Describe the model by plain values and float64 arrays."""
         ...
@@ -42,6 +47,7 @@ def check_surrogate(
     *,
     output_shape: tuple[int, ...] = (),
     extrapolates: bool = True,
+    saves: bool = True,
     training_error: float = 1e-2,
     unseen_error: float = 0.05,
 ) -> None:
@@ -59,6 +65,8 @@ def check_surrogate(
     extrapolates
         Whether it answers far from its cases too, less surely; False demands that it refuses.
         Its cases lie between -1 and 1.
+    saves
+        Whether it can be saved; one that ``seacage score`` compares with a twin need not.
     training_error, unseen_error
         Largest miss of a case it was given, and root mean square miss of unseen ones, as
         shares of the spread. A network, which holds cases back and stops early, may need
@@ -73,7 +81,9 @@ def check_surrogate(
     _check_far(fitted, x, extrapolates=extrapolates)
     _check_noise(fitted, unseen)
     _check_seed(make_fitted, x, y, unseen)
-    _check_saving(fitted, unseen)
+    if saves:
+        assert isinstance(fitted, SavedSurrogate), "it has no to_arrays and from_arrays"
+        _check_saving(fitted, unseen)
     _check_refusals(fitted, make_fitted, x, y)
 
 
@@ -144,7 +154,7 @@ def _check_seed(make_fitted: MakeFitted, x: Inputs, y: Outputs, unseen: Inputs) 
     np.testing.assert_array_equal(again.std, first.std, err_msg="the seed does not fix the std")
 
 
-def _check_saving(fitted: FittedSurrogate, unseen: Inputs) -> None:
+def _check_saving(fitted: SavedSurrogate, unseen: Inputs) -> None:
     settings, arrays = fitted.to_arrays()
     for name, values in arrays.items():
         assert values.dtype == np.float64, f"array {name} is {values.dtype}, not float64"
