@@ -182,7 +182,6 @@ def _alike(block: CaseBlock) -> list[CaseBlock]:
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
     by, cage = block.simulator, _cage(block.cage_toml)
-    assert by.law != "morison"  # the simulator refused it
     response = settle(
         cage,
         block.seas,

@@ -81,7 +81,6 @@ class NetLaw:
 
     def screen(self, panels: Panels) -> Screen:
         """The law as a screen law, which twine by twine is not."""
-        assert self.name != "morison"
         solidity, diameter = self.netting(panels)
         return Screen(law=self.name, solidity=solidity, twine_diameter=diameter, tuning=self.tuning)
 

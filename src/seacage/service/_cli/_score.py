@@ -72,13 +72,14 @@ def error_rows(scores: "Iterable[SensorScore]") -> list[tuple[str, str]]:
 
 
 def _baseline_rows(score: "BaselineScore") -> list[tuple[str, str]]:
-    """A line for the twin and each other learner, on ten-minute means."""
-    over = {
-        name: f"; {o.mean:+.3g} ({o.low:+.3g} to {o.high:+.3g})" for name, o in score.gain.items()
-    }
+    """A line for each other learner, on ten-minute means."""
+    twin = f"{score.unit}, less the twin's {score.mae['twin']:.3g}:"
     return [
-        (f"{score.sensor}, {name}", f"MAE {mae:.3g} {score.unit}{over.get(name, '')}")
-        for name, mae in score.mae.items()
+        (
+            f"{score.sensor}, {name}",
+            f"MAE {score.mae[name]:.3g} {twin} {o.mean:+.3g} ({o.low:+.3g} to {o.high:+.3g})",
+        )
+        for name, o in score.gain.items()
     ]
 
 
