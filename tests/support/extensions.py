@@ -1,7 +1,17 @@
-"""Packages laid where Python finds them, as pip leaves them: a module and a dist-info folder."""
+"""Packages laid where Python finds them, as pip leaves them, and a law with every number."""
 
 from collections.abc import Mapping
 from pathlib import Path
+
+from seacage.dynamics import ScreenLaw
+
+OWN_LAW = ScreenLaw(
+    title="of no author",
+    coefficients=lambda s: (1.3 * s + 6.0 * s**2, s - 0.5 * s**2),
+    skin_friction=0.03,
+    third=0.15,
+    second=-0.3,
+)
 
 Groups = Mapping[str, Mapping[str, str]]  # by group of entry points, name and place
 
