@@ -10,7 +10,16 @@ import pytest
 
 from extensions import install
 from seacage.cage import Cage
-from seacage.conventions import Flag, InputError, Origin, RecordError, load_extension
+from seacage.campaigns import Plan, Simulator, run_campaign
+from seacage.campaigns._cases import software_version
+from seacage.conventions import (
+    Flag,
+    InputError,
+    Origin,
+    RecordError,
+    extension_names,
+    load_extension,
+)
 from seacage.dynamics import ScreenLaw, loland, settle
 from seacage.ocean import SeaState
 from seacage.records import Reader, Record, instant, read_record
@@ -217,9 +226,11 @@ def packages(tmp_path, monkeypatch):
     for name, groups in places.items():
         install(tmp_path, name, "2.5", groups, MODULE)
     monkeypatch.syspath_prepend(tmp_path)
-    load_extension.cache_clear()
+    for known in (extension_names, load_extension):
+        known.cache_clear()
     yield tmp_path
-    load_extension.cache_clear()
+    for known in (extension_names, load_extension):
+        known.cache_clear()
 
 
 def test_an_installed_law_settles_by_its_name(packages):
@@ -267,3 +278,20 @@ def test_a_file_that_a_reader_cannot_read_is_refused_in_one_sentence(packages, n
     with pytest.raises(InputError, match=says) as refused:
         read_record(path)
     assert "\n" not in str(refused.value)
+
+
+def test_a_campaign_goes_on_with_the_same_version_of_a_law_alone(packages):
+    plan, store = Plan.sample(2, 1), packages / "campaign"
+    how = {"law": "tl-good", "method": "settle", "workers": 1}
+    first = run_campaign(CAGE, plan, store, **how)
+    assert first.law == "tl-good (tidelab 2.5)"
+    assert run_campaign(CAGE, plan, store, **how).sha256 == first.sha256
+    assert software_version("tl-good").endswith(", law tl-good (tidelab 2.5)")
+    assert ", law" not in software_version("loland")
+    about = packages / "tidelab-2.5.dist-info/METADATA"
+    about.write_text(about.read_text().replace("2.5", "2.6"))
+    load_extension.cache_clear()
+    with pytest.raises(InputError, match="a campaign with another load law"):
+        run_campaign(CAGE, plan, store, **how)
+    with pytest.raises(InputError, match="No screen law 'tl-absent'"):
+        Simulator(law="tl-absent")

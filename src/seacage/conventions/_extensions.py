@@ -23,6 +23,7 @@ class Extension:
     value: Any
 
 
+@cache
 def extension_names(group: Group) -> tuple[str, ...]:
     """Names that installed packages add to a group; none is loaded."""
     return tuple(sorted({one.name for one in entry_points(group=f"seacage.{group}")}))
