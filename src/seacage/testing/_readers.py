@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from seacage.conventions import Flag, InputError, RecordError
+from seacage.conventions import TABLE_BYTES, Flag, InputError, RecordError, read_bytes
 from seacage.records import Reader, Record, check_record, moment
 from seacage.testing._surrogates import check_refused
 
@@ -32,7 +32,7 @@ def check_reader(
     values
         Of its first row, by door key: what a person reads in the file, in the key's unit.
     """
-    record = reader.read(example, "example")
+    record, whole = reader.read(example, "example"), read_bytes(example, most=TABLE_BYTES)
     assert isinstance(record, Record), f"it gives a {type(record).__name__}, not a Record"
     assert record.stream == "example", f"the stream is called {record.stream}, not as asked"
     assert len(record) > 2, f"the example has {len(record)} rows; three are needed"
@@ -45,14 +45,14 @@ def check_reader(
         bad = np.mean(flags == Flag.FAIL)
         assert bad < 0.5, f"{bad:.0%} of {key} fail the checks: is it in its key's unit?"
     if reader.recognises is not None:
-        assert reader.recognises(example.read_bytes()[:4096]), "it does not recognise the example"
+        assert reader.recognises(whole[:4096]), "it does not recognise the example"
         for other in (b"", b"time,hs_m\n2020-01-01T00:00:00Z,1.0\n", bytes(range(256))):
             assert not reader.recognises(other), f"it takes {other[:20]!r} for its own format"
     assert reader.endings or reader.recognises, "no file is ever given to it"
     assert all(one == one.lower() and one[:1] == "." for one in reader.endings), "an ending"
     _check_clock(reader, example, record)
     with TemporaryDirectory() as folder:
-        _check_broken_files(reader, example.read_bytes(), record, Path(folder) / example.name)
+        _check_broken_files(reader, whole, record, Path(folder) / example.name)
 
 
 def _check_clock(reader: Reader, example: Path, record: Record) -> None:
