@@ -13,7 +13,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal
 
 import numpy as np
 from _timing import ONCE
@@ -21,7 +21,6 @@ from _timing import ONCE
 from seacage.cage import Cage
 from seacage.campaigns import Plan, run_campaign
 from seacage.conventions import SeacageError
-from seacage.dynamics import MovingLaw
 from seacage.records import CampaignRecord, read_campaign
 from seacage.surrogates import (
     GCN,
@@ -202,8 +201,7 @@ def _print_floor(campaign: CampaignRecord, cases: np.ndarray, scratch: Path) -> 
     seas = [campaign.seas[case] for case in cases]
     plan = Plan.listed(seas, seed=campaign.seed + 777, name="again")
     cage = Cage.from_toml(campaign.cage_toml)
-    law = cast("MovingLaw", campaign.law)
-    again = run_campaign(cage, plan, scratch / "again", law=law, workers=1)
+    again = run_campaign(cage, plan, scratch / "again", law=campaign.law, workers=1)
     difference = (again.node_position - campaign.node_position[cases])[again.converged]
     mae = np.abs(difference).mean() / np.sqrt(2.0)
     p99 = np.quantile(np.linalg.norm(difference, axis=2), 0.99) / np.sqrt(2.0)

@@ -10,7 +10,7 @@ from _timing import ONCE
 from seacage.cage import Cage
 from seacage.campaigns import Plan
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.dynamics import MovingLaw, rest_shape, simulate, simulation_lanes
+from seacage.dynamics import Law, rest_shape, simulate, simulation_lanes
 from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean
 from seacage.dynamics._moored._detailed import full_assembly
@@ -79,9 +79,7 @@ def whole(duration: float, spin_up: float) -> None:
         print(f"  {pace / theirs:.0f} × {name}: {theirs:.2g}")
 
 
-def march(
-    assembly: Assembly, law: MovingLaw, *, waves: int, each: int = EACH, hold: int = 4
-) -> March:
+def march(assembly: Assembly, law: Law, *, waves: int, each: int = EACH, hold: int = 4) -> March:
     """The cases on their way, each in so many waves; so many steps between two looks at them."""
     depth = CAGE.site.water_depth
     ocean = Ocean(
@@ -122,7 +120,7 @@ def without(assembly: Assembly, what: str) -> Assembly:
 def parts(refreshes: int, rounds: int) -> None:
     """A step of the kernel, and how much of it goes when a part is left out."""
     assembly, _ = scale_mass(Assembly.of(CAGE), STEP)
-    kf: MovingLaw = "kristiansen-faltinsen"
+    kf: Law = "kristiansen-faltinsen"
     marches = {
         "all, Kristiansen and Faltinsen's law": march(assembly, kf, waves=30),
         "  without bars": march(without(assembly, "bars"), kf, waves=30),

@@ -8,7 +8,7 @@ from jaxtyping import Float
 
 from seacage.cage import Cage, Structure
 from seacage.conventions import has_answer
-from seacage.dynamics import LAWS, History, Mooring, MovingLaw, Response, settle, simulate
+from seacage.dynamics import LAWS, History, Law, Mooring, Response, settle, simulate
 from seacage.ocean import SeaState, Waves, regular_wave, sample_waves
 from validation._present_area import settle_on_present_area
 
@@ -73,7 +73,7 @@ class Answer:
 
 
 def answers(
-    subject: Cage | Structure, waters: Sequence[Water], law: MovingLaw, how: How
+    subject: Cage | Structure, waters: Sequence[Water], law: Law, how: How
 ) -> list[Answer | None]:
     """One for each water; None where there is no equilibrium to be had.
 
@@ -113,7 +113,7 @@ def _settled(response: Response, case: int) -> Answer | None:
 
 
 def _simulated(
-    subject: Cage | Structure, waters: Sequence[Water], law: MovingLaw, how: How
+    subject: Cage | Structure, waters: Sequence[Water], law: Law, how: How
 ) -> list[Answer | None]:
     """With still water as one case more: a structure's rest is not known otherwise."""
     every = [*waters, Water(sea=SeaState(current_speed=0.0, current_to=0.0))]

@@ -21,8 +21,8 @@ from seacage.dynamics._parts._assembly import (
     Slender,
     Springs,
 )
+from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import MovingLaw
 from seacage.ocean import SeaState, Waves, sample_waves
 
 NONE = np.zeros(0)
@@ -136,7 +136,7 @@ def marched(
     duration: float,
     time_step: float = 0.002,
     waves: Waves | None = None,
-    law: MovingLaw = "morison",
+    law: Law = "morison",
 ) -> tuple[Float[np.ndarray, " t"], Float[np.ndarray, "t node 3"], Float[np.ndarray, "t node 3"]]:
     """A structure let go from a shape, in still water or in waves without a ramp.
 

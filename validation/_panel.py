@@ -8,7 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
-from seacage.dynamics import MovingLaw, aarsnes, kristiansen_faltinsen, loland
+from seacage.dynamics import aarsnes, kristiansen_faltinsen, loland
 from seacage.dynamics._parts._assembly import Panels
 from seacage.dynamics._physics._motion import NetLaw, twine_load
 
@@ -106,7 +106,7 @@ def _twines(
     return float(drag), float(lift)
 
 
-PANEL_LAWS: dict[MovingLaw, PanelLaw] = {
+PANEL_LAWS: dict[str, PanelLaw] = {
     "aarsnes": _plain(aarsnes),
     "loland": _plain(loland),
     "kristiansen-faltinsen": _by_reynolds,

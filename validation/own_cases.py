@@ -5,13 +5,13 @@ from functools import partial
 from typing import Any
 
 from seacage.cage import Structure
-from seacage.dynamics import LAWS, MovingLaw
+from seacage.dynamics import LAWS
 from validation._answers import Water, answers
 from validation._case import Case, Measured, read_cases
 from validation._panel import PANEL_LAWS, Panel
 from validation._row import Row, Section, Span
 
-Found = dict[tuple[int, MovingLaw, Water], Any]
+Found = dict[tuple[int, str, Water], Any]
 """What each member of the ensemble does, by each law, in each water."""
 
 
@@ -40,8 +40,8 @@ def _found(case: Case) -> Found:
     return found
 
 
-def _waters_by_law(case: Case) -> dict[MovingLaw, list[Water]]:
-    requests: dict[MovingLaw, list[Water]] = {}
+def _waters_by_law(case: Case) -> dict[str, list[Water]]:
+    requests: dict[str, list[Water]] = {}
     for measured in case.measured:
         for law in _laws(case, measured):
             if measured.at.water not in requests.setdefault(law, []):
@@ -49,7 +49,7 @@ def _waters_by_law(case: Case) -> dict[MovingLaw, list[Water]]:
     return requests
 
 
-def _laws(case: Case, measured: Measured) -> list[MovingLaw]:
+def _laws(case: Case, measured: Measured) -> list[str]:
     """The law of the line, or all of the case's."""
     return [measured.law] if measured.law else list(case.laws)
 

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from benchmarks._newton import nearer
 from compiled import still_force
+from extensions import OWN_LAW
 from seacage.cage import Cage
 from seacage.dynamics import LAWS
 from seacage.dynamics._kernel._library import Balance, Balancing, kernel
@@ -27,7 +28,7 @@ ANCHORED = anchor_assembly(
     spokes=st.integers(3, 12),
     cylinder=st.integers(1, 5),
     anchored=st.booleans(),
-    law=st.sampled_from(LAWS),
+    law=st.sampled_from((*LAWS, OWN_LAW)),
     wake=st.booleans(),
     waves=st.booleans(),
     pipe_drag=st.booleans(),

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from compiled import kernel_force, kernel_water
+from extensions import OWN_LAW
 from node_waves import node_waves
 from seacage.cage import Cage
 from seacage.dynamics import LAWS, MOVING_LAWS, simulation_lanes
@@ -160,7 +161,7 @@ def magnitudes(assembly, law, water, position, velocity):
 @settings(max_examples=60)
 @given(
     mesh=meshes(),
-    law=st.sampled_from(MOVING_LAWS),
+    law=st.sampled_from((*MOVING_LAWS, OWN_LAW)),
     twine_drag=st.none() | st.tuples(st.floats(0.5, 2.0), st.floats(0.0, 0.1)),
     softer=st.sampled_from([1.0, 1e-6]),
     shaken=st.floats(0.05, 1.0),  # at its own length a bar is slack or taut by a rounding
@@ -199,7 +200,7 @@ def test_the_march_computes_the_definition_of_every_force(
 def test_each_lane_keeps_its_own_law(mesh, seed):
     rng = np.random.default_rng(seed)
     assembly = varied(Assembly.of(caged(mesh, rng)), rng, 1e-6)
-    names = rng.choice(LAWS, LANES)
+    names = rng.choice(np.array([*LAWS, OWN_LAW], object), LANES)
     shape = (LANES, *assembly.position.shape)
     position = single(assembly.position + rng.normal(scale=0.3, size=shape))
     velocity = single(rng.normal(scale=0.5, size=shape))

@@ -14,11 +14,10 @@ from seacage.cage import cage_or_structure
 from seacage.campaigns._pool import one_thread
 from seacage.conventions import InputError, SeacageError, has_answer
 from seacage.dynamics import (
-    LAWS,
     PHYSICS,
     History,
     Mooring,
-    MovingLaw,
+    law_label,
     settle,
     simulate,
     simulation_lanes,
@@ -42,7 +41,8 @@ class Simulator:
         "simulate": each sea state in time, with irregular waves of its own seed. "settle": the
         equilibrium in its current, with the waves' mean loads.
     law
-        Load law of the netting; "morison", twine by twine, in time only.
+        Name of the load law of the netting, of seacage or installed; "morison", twine by twine,
+        in time only.
     skin_friction, lift_factor
         Changes of a screen law, as for ``settle``.
     mooring
@@ -64,7 +64,7 @@ class Simulator:
     """
 
     method: Literal["simulate", "settle"] = "simulate"
-    law: MovingLaw = "kristiansen-faltinsen"
+    law: str = "kristiansen-faltinsen"
     skin_friction: float | None = None
     lift_factor: float = 1.0
     mooring: Mooring = "catenary"
@@ -81,11 +81,12 @@ class Simulator:
             object.__setattr__(self, name, tuple(getattr(self, name)))
         if self.method not in _BLOCK:
             raise InputError(f"Simulator: method {self.method!r} is none of {', '.join(_BLOCK)}.")
-        if not self.in_time and self.law not in LAWS:
+        if not self.in_time and self.law == "morison":
             raise InputError(
-                f"Simulator: an equilibrium knows no law {self.law!r}; there are: "
-                f"{', '.join(LAWS)}. Or simulate in time."
+                "Simulator: an equilibrium knows no law 'morison'. Choose a screen law, or "
+                "simulate in time."
             )
+        law_label(self.law)  # refused now where it is not installed
 
     @property
     def in_time(self) -> bool:
@@ -140,17 +141,19 @@ class Answers:
     core_seconds: float  # processor time [s]
 
 
-def software_version() -> str:
-    """The version of seacage that runs here, and the revision of its physics."""
-    return f"seacage {version('seacage')}, physics {PHYSICS}"
+def software_version(law: str) -> str:
+    """What runs here: seacage, the revision of its physics, and a law that is not its own."""
+    label = law_label(law)
+    own = "" if label == law else f", law {label}"
+    return f"seacage {version('seacage')}, physics {PHYSICS}{own}"
 
 
 def answer_block(block: CaseBlock) -> Answers:
     """Compute one block.
 
-    Raises SeacageError: the worker runs another version of seacage than who asks.
+    Raises SeacageError: the worker runs another version of seacage, or of a law, than who asks.
     """
-    if (here := software_version()) != block.made_by:
+    if (here := software_version(block.simulator.law)) != block.made_by:
         raise SeacageError(
             f"A worker runs {here}, the campaign {block.made_by}: their numbers may differ. "
             "Install the same version on every worker."
@@ -179,7 +182,6 @@ def _alike(block: CaseBlock) -> list[CaseBlock]:
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
     by, cage = block.simulator, _cage(block.cage_toml)
-    assert by.law != "morison"  # the simulator refused it
     response = settle(
         cage,
         block.seas,

@@ -18,7 +18,7 @@ from seacage.campaigns._cluster import map_on_cluster
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.conventions import InputError, Origin, Progress, no_progress
-from seacage.dynamics import PHYSICS, SPRINGS
+from seacage.dynamics import PHYSICS, SPRINGS, law_label
 from seacage.records import CampaignRecord
 
 # Attributes that make two campaigns the same, and how people call them
@@ -187,7 +187,7 @@ def _blocks(
             mooring_seeds=tuple(moorings[span] if by.draw_mooring else ()),
             duration=plan.duration,
             simulator=by,
-            made_by=software_version(),
+            made_by=software_version(by.law),
         )
         for span in spans
     ]
@@ -228,14 +228,14 @@ def _attributes(cage: Cage | Structure, plan: Plan, by: Simulator) -> dict[str, 
         "title": f"Campaign {plan.name!r} of cage {cage.name!r}",
         "summary": f"{what} of a moored net cage in {len(plan)} sea states{drawn}.",
         "keywords": "aquaculture, net cage, mooring, numerical simulation",
-        "source": f"seacage {number}, {by.method}, netting law {by.law}",
+        "source": f"seacage {number}, {by.method}, netting law {law_label(by.law)}",
         "product_version": number,
         "physics": PHYSICS,
         "origin": Origin.COMPUTED.value,
         "method": by.method,
         "cage": cage.to_toml(),
         "bridles": " ".join(cage.bridle_names),
-        "law": by.law,
+        "law": law_label(by.law),
         "plan": plan.name,
         "plan_sha256": plan.sha256,
         "seed": plan.seed,

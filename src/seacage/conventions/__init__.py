@@ -11,6 +11,13 @@ from seacage.conventions._errors import (
     RecordError,
     SeacageError,
 )
+from seacage.conventions._extensions import (
+    EXTENSION_GROUPS,
+    Extension,
+    call_extension,
+    extension_names,
+    load_extension,
+)
 from seacage.conventions._intake import (
     TABLE_BYTES,
     TEXT_BYTES,
@@ -26,6 +33,7 @@ from seacage.conventions._rows import Rows
 from seacage.conventions._sentences import SentenceValue, fill_sentence
 
 __all__ = [
+    "EXTENSION_GROUPS",
     "GRAVITY",
     "RESULTS",
     "TABLE_BYTES",
@@ -33,6 +41,7 @@ __all__ = [
     "WATER_DENSITY",
     "WATER_VISCOSITY",
     "YEAR",
+    "Extension",
     "Flag",
     "InputError",
     "ModelError",
@@ -44,14 +53,17 @@ __all__ = [
     "Rows",
     "SeacageError",
     "SentenceValue",
+    "call_extension",
     "check_file",
     "compass",
     "count_times",
     "duration_text",
+    "extension_names",
     "fill_sentence",
     "fold_degrees",
     "gravest",
     "has_answer",
+    "load_extension",
     "no_progress",
     "parse_json",
     "parse_toml",

@@ -54,6 +54,7 @@ from seacage.records._readers._column_map import Column, ColumnMap, shipped_maps
 from seacage.records._readers._csv import check_rows, read_rows
 from seacage.records._readers._inspect import Inspection, inspect_file
 from seacage.records._readers._netcdf import write_record
+from seacage.records._readers._own_readers import Reader
 from seacage.records._readers._reader import known_map, read_map, read_record
 from seacage.records._readers._results import read_results
 from seacage.records._readers._sea_states import SEA_COLUMNS, read_sea_states
@@ -86,6 +87,7 @@ __all__ = [
     "NetcdfMap",
     "QualityState",
     "Range",
+    "Reader",
     "Record",
     "Sample",
     "Season",

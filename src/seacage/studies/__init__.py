@@ -5,6 +5,7 @@ from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._fidelity._study import FidelityStudy, fidelity_study
 from seacage.studies._held_out import score_record
 from seacage.studies._paper._claims import PaperClaim
+from seacage.studies._paper._sensor_baselines import BaselineScore, score_surrogate
 from seacage.studies._paper._shape_scores import ShapeScore
 from seacage.studies._paper._study import LevelOneScore, PaperStudy, paper_study
 from seacage.studies._paper._trainings import WayScore
@@ -18,6 +19,7 @@ from seacage.studies._shape_discrepancy import (
 )
 
 __all__ = [
+    "BaselineScore",
     "BenchmarkStudy",
     "Demonstration",
     "Errors",
@@ -38,4 +40,5 @@ __all__ = [
     "score_paths",
     "score_points",
     "score_record",
+    "score_surrogate",
 ]

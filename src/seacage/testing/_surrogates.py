@@ -23,6 +23,11 @@ class FittedSurrogate(Protocol):
         """Answer at each row of features."""
         ...
 
+
+@runtime_checkable
+class SavedSurrogate(FittedSurrogate, Protocol):
+    """What the suite needs of one that can be saved."""
+
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Describe the model by plain values and float64 arrays."""
         ...
@@ -42,6 +47,7 @@ def check_surrogate(
     *,
     output_shape: tuple[int, ...] = (),
     extrapolates: bool = True,
+    saves: bool = True,
     training_error: float = 1e-2,
     unseen_error: float = 0.05,
 ) -> None:
@@ -59,6 +65,8 @@ def check_surrogate(
     extrapolates
         Whether it answers far from its cases too, less surely; False demands that it refuses.
         Its cases lie between -1 and 1.
+    saves
+        Whether it can be saved; one that ``seacage score`` compares with a twin need not.
     training_error, unseen_error
         Largest miss of a case it was given, and root mean square miss of unseen ones, as
         shares of the spread. A network, which holds cases back and stops early, may need
@@ -73,7 +81,9 @@ def check_surrogate(
     _check_far(fitted, x, extrapolates=extrapolates)
     _check_noise(fitted, unseen)
     _check_seed(make_fitted, x, y, unseen)
-    _check_saving(fitted, unseen)
+    if saves:
+        assert isinstance(fitted, SavedSurrogate), "it has no to_arrays and from_arrays"
+        _check_saving(fitted, unseen)
     _check_refusals(fitted, make_fitted, x, y)
 
 
@@ -125,7 +135,7 @@ def _check_it_learns(
 
 def _check_far(fitted: FittedSurrogate, x: Inputs, *, extrapolates: bool) -> None:
     if not extrapolates:
-        _check_refused(lambda: fitted.predict(x + 20.0), error=InputError, about="far cases")
+        check_refused(lambda: fitted.predict(x + 20.0), error=InputError, about="far cases")
         return
     near, far = fitted.predict(x).std.mean(), fitted.predict(x + 20.0).std.mean()
     assert far > 3.0 * near, "it is as sure far from its cases as among them"
@@ -144,7 +154,7 @@ def _check_seed(make_fitted: MakeFitted, x: Inputs, y: Outputs, unseen: Inputs) 
     np.testing.assert_array_equal(again.std, first.std, err_msg="the seed does not fix the std")
 
 
-def _check_saving(fitted: FittedSurrogate, unseen: Inputs) -> None:
+def _check_saving(fitted: SavedSurrogate, unseen: Inputs) -> None:
     settings, arrays = fitted.to_arrays()
     for name, values in arrays.items():
         assert values.dtype == np.float64, f"array {name} is {values.dtype}, not float64"
@@ -163,7 +173,7 @@ def _check_saving(fitted: FittedSurrogate, unseen: Inputs) -> None:
         lost = {other: kept for other, kept in read.items() if other != name}
         unfinished = np.full_like(values, np.nan)
         for damaged in (lost, lost | {name: values[None]}, lost | {name: unfinished}):
-            _check_refused(
+            check_refused(
                 lambda damaged=damaged: type(fitted).from_arrays(settings, damaged),
                 error=ModelError,
                 about=f"a damaged array {name}",
@@ -176,15 +186,15 @@ def _check_refusals(
     missing = x.copy()
     missing[3, 1] = np.nan
     wide = np.column_stack([x, x])
-    _check_refused(lambda: fitted.predict(missing), error=InputError, about="NaN in x")
-    _check_refused(lambda: fitted.predict(wide), error=InputError, about="too many features")
-    _check_refused(lambda: make_fitted(missing, y, 0), error=InputError, about="NaN in x")
+    check_refused(lambda: fitted.predict(missing), error=InputError, about="NaN in x")
+    check_refused(lambda: fitted.predict(wide), error=InputError, about="too many features")
+    check_refused(lambda: make_fitted(missing, y, 0), error=InputError, about="NaN in x")
     gap = y.copy()
     gap[5] = np.inf
-    _check_refused(lambda: make_fitted(x, gap, 0), error=InputError, about="infinity in y")
+    check_refused(lambda: make_fitted(x, gap, 0), error=InputError, about="infinity in y")
 
 
-def _check_refused(call: Callable[[], object], *, error: type[Exception], about: str) -> None:
+def check_refused(call: Callable[[], object], *, error: type[Exception], about: str) -> None:
     try:
         call()
     except error as refusal:

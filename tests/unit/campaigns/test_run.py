@@ -319,7 +319,9 @@ def test_a_way_to_answer_that_does_not_exist_is_refused(
 def test_a_worker_with_another_version_refuses_to_answer(
     small_cage: Cage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("seacage.campaigns._run.software_version", lambda: "seacage 9.9, physics 7")
+    monkeypatch.setattr(
+        "seacage.campaigns._run.software_version", lambda _: "seacage 9.9, physics 7"
+    )
     with pytest.raises(SeacageError, match=r"the campaign seacage 9\.9, physics 7: their numbers"):
         run_campaign(small_cage, Plan.sample(1, 2), tmp_path / "c", workers=1)
     assert answer_block.__module__ == "seacage.campaigns._cases"  # by which name it travels

@@ -364,4 +364,4 @@ def test_an_unknown_law_is_refused_with_those_that_are_known():
     )
     done = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=False)
     message = done.stderr.splitlines()[-1]
-    assert message.endswith("no law 'morison'; there are: aarsnes, loland, kristiansen-faltinsen.")
+    assert "No screen law 'morison'; there are: aarsnes, loland, kristiansen-faltinsen." in message

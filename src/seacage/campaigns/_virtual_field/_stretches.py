@@ -17,7 +17,7 @@ from seacage.campaigns._virtual_field._timetable import Stretch, Timetable, side
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Weather
 from seacage.conventions import InputError, RecordError
-from seacage.dynamics import PHYSICS, Followed, MovingLaw, follow, simulation_lanes
+from seacage.dynamics import PHYSICS, Followed, Law, follow, simulation_lanes
 
 _MANIFEST = "manifest.json"
 
@@ -29,7 +29,7 @@ class TrueCage:
     toml: str  # of the true cage, on its finer mesh
     # As ``follow`` takes them
     refined: int  # how much finer it is than drawn
-    law: MovingLaw
+    law: Law
     skin_friction: float | None
     lift_factor: float
     stiffening: tuple[float, float]

@@ -127,7 +127,7 @@ def _blocks(cage: Cage, moments: Sequence[_Moments]) -> dict[CaseBlock, np.ndarr
                     wave_seeds=(0,) * len(part),
                     duration=0.0,
                     simulator=by,
-                    made_by=software_version(),
+                    made_by=software_version(by.law),
                 )
                 blocks[block] = before + part
         before += len(one.growth)

@@ -14,7 +14,7 @@ from seacage.cage import Cage
 from seacage.campaigns._cases import Simulator
 from seacage.campaigns._virtual_field._family import Water, draw_truth
 from seacage.conventions import InputError, parse_toml, read_text
-from seacage.dynamics import Law
+from seacage.dynamics import law_label
 
 _OWN = resources.files("seacage.campaigns._virtual_field") / "hidden_ace.toml"
 
@@ -223,7 +223,7 @@ class TruthParameters:
     ``TruthParameters.of_family(7)`` is one of many, drawn by its number.
     """
 
-    law: Law
+    law: str
     seed: int
     skin_friction: float | None = None
     lift_factor: float = 1.0
@@ -244,6 +244,9 @@ class TruthParameters:
     sha256: str
     # What the notes of its records say of it
     title: str = ""
+
+    def __post_init__(self) -> None:
+        law_label(self.law)  # refused now where it is not installed
 
     @classmethod
     def read(cls, path: str | Path | None = None) -> Self:

@@ -13,6 +13,7 @@ from seacage.conventions import WATER_VISCOSITY
 from seacage.dynamics._kernel._library import kernel, parts_of
 from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStruct, Struct
 from seacage.dynamics._parts._assembly import Assembly, Bars
+from seacage.dynamics._physics._laws import own_law
 from seacage.dynamics._physics._loads import DYNAMIC
 from seacage.dynamics._physics._motion import NetLaw, bar_damping
 from seacage.dynamics._physics._screens import CYLINDER, facing
@@ -150,10 +151,12 @@ def _numbers(
         normal = solidity / (2.0 * (1.0 - solidity) ** 2)
         each = (reynolds, np.asarray(facing(solidity, 1.0)[0]), normal)
         return (screen.skin, 0.2, 0.9, 0.1, lift_factor, 1.0), each
-    terms = screen.terms(np.ones_like(law.wake))
-    facing_drag = terms["constant"] + terms["slope"]
+    terms, own = screen.terms(np.ones_like(law.wake)), own_law(law.name)
+    second, third = (own.second, own.third) if own else (0.0, 0.0)
+    facing_drag = terms["constant"] + terms["slope"] + terms["third"]
     # the factor on lift is in the terms
-    return (screen.skin, 0.0, 1.0, 0.0, 1.0, 0.0), (facing_drag, terms["lift"], 0.0 * law.wake)
+    numbers = (screen.skin, second, 1.0 - third, third, 1.0, 0.0)
+    return numbers, (facing_drag, terms["lift"], 0.0 * law.wake)
 
 
 def _panel_mass(assembly: Assembly) -> Float[np.ndarray, " panel"]:

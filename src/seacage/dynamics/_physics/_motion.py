@@ -20,6 +20,7 @@ from seacage.dynamics._parts._assembly import (
     Slender,
     direction,
 )
+from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
@@ -33,7 +34,7 @@ from seacage.dynamics._physics._loads import (
     spring_force,
     wet_share,
 )
-from seacage.dynamics._physics._screens import AS_PUBLISHED, MovingLaw, Screen, Tuning, check_laws
+from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning, check_laws
 
 CasePanel = Float[np.ndarray, "*case panel"]
 CasePanel3 = Float[np.ndarray, "case panel 3"]
@@ -55,7 +56,7 @@ class Water:
 class NetLaw:
     """Law of the loads on the netting, with the wake and the growth that it meets."""
 
-    name: MovingLaw  # a screen law, or "morison" for twine by twine
+    name: Law  # a screen law, or "morison" for twine by twine
     wake: Float[np.ndarray, "case panel"]  # share of the current that each panel meets [-]
     # Drag coefficients of a twine across and along the flow [-]; None takes that of a smooth
     # cylinder at its Reynolds number, after Choo and Casarella, and no skin friction
@@ -80,7 +81,6 @@ class NetLaw:
 
     def screen(self, panels: Panels) -> Screen:
         """The law as a screen law, which twine by twine is not."""
-        assert self.name != "morison"
         solidity, diameter = self.netting(panels)
         return Screen(law=self.name, solidity=solidity, twine_diameter=diameter, tuning=self.tuning)
 

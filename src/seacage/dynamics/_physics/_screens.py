@@ -2,23 +2,15 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.conventions import WATER_VISCOSITY, InputError
+from seacage.dynamics._physics._laws import LAWS, Law, ScreenLaw, own_law
 
 CasePanel = Float[np.ndarray, "case panel"]
 PerCase = Float[np.ndarray, " case"]
-Law = Literal["aarsnes", "loland", "kristiansen-faltinsen"]
-"""Name of a screen law."""
-LAWS: tuple[Law, ...] = ("aarsnes", "loland", "kristiansen-faltinsen")
-"""The screen laws."""
-MovingLaw = Literal["aarsnes", "loland", "kristiansen-faltinsen", "morison"]
-"""Name of a law of a net that moves."""
-MOVING_LAWS: tuple[MovingLaw, ...] = (*LAWS, "morison")
-"""Laws of a net that moves: "morison" loads it twine by twine."""
 
 # Drag coefficient of a smooth cylinder: coefficients of powers of log10 Re, from 0 up. Goldstein
 # (1965) as fitted by Kristiansen & Faltinsen (2012), for 10^1.5 <= Re <= 10^4.
@@ -26,7 +18,7 @@ CYLINDER = (-78.46675, 254.73873, -327.8864, 223.64577, -87.92234, 20.00769, -2.
 
 REYNOLDS_RANGE = (32.0, 1.0e4)
 # C_D of a panel along the flow by each law as published [-]
-SKIN_FRICTION: dict[Law, float] = {"aarsnes": 0.04, "loland": 0.04, "kristiansen-faltinsen": 0.0}
+SKIN_FRICTION = {"aarsnes": 0.04, "loland": 0.04, "kristiansen-faltinsen": 0.0}
 
 Values = float | Float[np.ndarray, "*#n"]
 
@@ -148,23 +140,19 @@ def _sin_twice(cos_theta: Values) -> Values:
     return 2.0 * cos_theta * np.sqrt(np.maximum(1.0 - cos_theta**2, 0.0))
 
 
-LawName = TypeVar("LawName", bound=str)
-
-
-def law_of_each(law: LawName | Sequence[LawName], cases: int) -> tuple[LawName, ...]:
+def law_of_each(law: Law | Sequence[Law], cases: int) -> tuple[Law, ...]:
     """The law of each case. Raises InputError: another number of laws than of cases."""
-    if isinstance(law, str):
-        return (law,) * cases  # pyright: ignore[reportReturnType]
+    if isinstance(law, str | ScreenLaw):
+        return (law,) * cases
     if len(law) != cases:
         raise InputError(f"{len(law)} laws for {cases} seas. Give one for each, or one for all.")
     return tuple(law)
 
 
-def check_laws(laws: Sequence[MovingLaw], tuning: Tuning) -> None:
+def check_laws(laws: Sequence[Law], tuning: Tuning) -> None:
     """Refuse laws of a moving net that are none, and changes where there is no screen law."""
     for law in laws:
-        if law not in MOVING_LAWS:
-            raise InputError(f"simulate: no law {law!r}; there are: {', '.join(MOVING_LAWS)}.")
+        own_law(law)
     if tuning != AS_PUBLISHED and set(laws) == {"morison"}:
         raise InputError(
             "simulate: skin_friction and lift_factor change screen laws, and law 'morison' is "
@@ -172,12 +160,13 @@ def check_laws(laws: Sequence[MovingLaw], tuning: Tuning) -> None:
         )
 
 
-def beyond_law(laws: Sequence[MovingLaw], current_speed: PerCase) -> Bool[np.ndarray, " case"]:
+def beyond_law(laws: Sequence[Law], current_speed: PerCase) -> Bool[np.ndarray, " case"]:
     """Which cases meet a current [m/s] that their law is not known for."""
-    return (np.array(laws) == "kristiansen-faltinsen") & (current_speed > FASTEST)
+    theirs = np.array([law == "kristiansen-faltinsen" for law in laws])
+    return theirs & (current_speed > FASTEST)
 
 
-def law_warnings(laws: Sequence[MovingLaw], current_speed: PerCase) -> tuple[str, ...]:
+def law_warnings(laws: Sequence[Law], current_speed: PerCase) -> tuple[str, ...]:
     """What to know of the laws at the current's speeds [m/s], in sentences."""
     met = current_speed[[law == "kristiansen-faltinsen" for law in laws]]
     beyond = current_speed[beyond_law(laws, current_speed)]
@@ -206,20 +195,24 @@ class Screen:
     The solidity fixes its numbers, and with Kristiansen and Faltinsen the speed too.
     """
 
-    law: Law  # which of ``LAWS``
+    law: Law  # one of ``LAWS``, or one's own
     solidity: Float[np.ndarray, "*case panel"]  # of each panel [-]
     twine_diameter: Float[np.ndarray, "*case panel"]  # of each panel, grown [m]
     tuning: Tuning = AS_PUBLISHED  # what is changed of the law
 
     def __post_init__(self) -> None:
-        if self.law not in LAWS:
-            raise InputError(f"settle: no law {self.law!r}; there are: {', '.join(LAWS)}.")
+        own_law(self.law, ours=LAWS)
 
     @property
     def skin(self) -> float:
         """C_D of a panel along the flow [-]."""
         given = self.tuning.skin_friction
-        return SKIN_FRICTION[self.law] if given is None else given
+        return self._published_skin if given is None else given
+
+    @property
+    def _published_skin(self) -> float:
+        own = own_law(self.law)
+        return SKIN_FRICTION[str(self.law)] if own is None else own.skin_friction
 
     def terms(self, speed: CasePanel) -> dict[str, CasePanel]:
         """The law's a, b, h, l and e at known speeds [m/s], as ``SteadyFlow`` names them [-]."""
@@ -227,13 +220,16 @@ class Screen:
             twine_reynolds = self.twine_diameter / (WATER_VISCOSITY * (1.0 - self.solidity))
             cd0, cl0 = facing(self.solidity, cylinder_drag(twine_reynolds * speed))
             terms = (0.9 * cd0, 0.1 * cd0, cl0, 0.2)
+        elif (own := own_law(self.law)) is not None:
+            cd0, cl0 = own.facing(self.solidity)
+            terms = ((1.0 - own.third) * cd0 - own.skin_friction, own.third * cd0, cl0, own.second)
         else:
             fixed = _aarsnes_terms if self.law == "aarsnes" else _loland_terms
             slope, lift = fixed(self.solidity)
             terms = (slope, 0.0, lift, 0.0)
         slope, third, lift, second = terms
         # what acts along the panel, as (1 − cosθ): a facing one bears what it did
-        slope = slope + (SKIN_FRICTION[self.law] - self.skin)
+        slope = slope + (self._published_skin - self.skin)
         terms = (self.skin, slope, third, self.tuning.lift_factor * lift, second)
         names = ("constant", "slope", "third", "lift", "lift_second")
         like = np.ones_like(speed)

@@ -8,7 +8,8 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.dynamics._parts._assembly import Assembly, Panels
-from seacage.dynamics._physics._screens import MovingLaw, Screen, loland
+from seacage.dynamics._physics._laws import Law
+from seacage.dynamics._physics._screens import Screen, loland
 
 CasePanel = Float[np.ndarray, "case panel"]
 Panel2 = Float[np.ndarray, "panel 2"]
@@ -26,7 +27,7 @@ def wake_factor(screen: Screen, speed: CasePanel) -> CasePanel:
 
 
 def wake_share(
-    assembly: Assembly, law: MovingLaw, current: Float[np.ndarray, "case panel 2"]
+    assembly: Assembly, law: Law, current: Float[np.ndarray, "case panel 2"]
 ) -> CasePanel:
     """Share of the current left for each panel: less on the down-stream half [-].
 

@@ -12,7 +12,8 @@ from seacage.conventions import InputError, Progress, count_times
 from seacage.dynamics._kernel._march import REFRESH
 from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._detailed import Damage
-from seacage.dynamics._physics._screens import MovingLaw, Tuning
+from seacage.dynamics._physics._laws import Law
+from seacage.dynamics._physics._screens import Tuning
 from seacage.dynamics._time._segments import AbstractWeather, Build, Course, SegmentBatch
 from seacage.dynamics._time._simulation import nodes_of
 
@@ -39,7 +40,7 @@ def follow(
     every: float = 2.0,
     spin_up: float = 300.0,
     time_step: float = 0.001,
-    law: MovingLaw = "loland",
+    law: Law = "loland",
     skin_friction: float | None = None,
     lift_factor: float = 1.0,
     stiffening: tuple[float, float] = (0.01, 0.5),

@@ -16,8 +16,9 @@ from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import MovingLaw, Tuning
+from seacage.dynamics._physics._screens import Tuning
 from seacage.dynamics._physics._wake import wake_in_sight
 from seacage.dynamics._time._forcing import morison_waves
 from seacage.ocean import MAX_CURRENT_SPEED, Waves
@@ -73,7 +74,7 @@ class Build:
     """The cage as it is followed: its law, how its ropes stiffen, how fine its mesh is."""
 
     cage: Cage
-    law: MovingLaw
+    law: Law
     tuning: Tuning  # changes of a screen law
     stiffening: tuple[float, float]
     refined: int

@@ -15,8 +15,8 @@ from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean, has_long_crests, simulation_lanes
 from seacage.dynamics._moored._choice import Mooring
 from seacage.dynamics._parts._assembly import Assembly
+from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._screens import (
-    MovingLaw,
     Tuning,
     beyond_law,
     check_laws,
@@ -41,7 +41,7 @@ def simulate(
     *,
     duration: float,
     seed: int | Sequence[int] = 0,
-    law: MovingLaw | Sequence[MovingLaw] = "kristiansen-faltinsen",
+    law: Law | Sequence[Law] = "kristiansen-faltinsen",
     skin_friction: float | None = None,
     lift_factor: float = 1.0,
     twine_drag: tuple[float, float] | None = None,
@@ -147,7 +147,7 @@ def simulate(
     its site.
     """
     seas = [sea] if isinstance(sea, SeaState) else list(sea)
-    laws: tuple[MovingLaw, ...] = law_of_each(law, len(seas))
+    laws: tuple[Law, ...] = law_of_each(law, len(seas))
     tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
     _check(seas, laws, twine_drag, tuning, workers)
     simulation = Simulation(
@@ -182,7 +182,7 @@ def simulate(
 
 def _simulate(
     simulation: Simulation,
-    laws: Sequence[MovingLaw],
+    laws: Sequence[Law],
     seas: list[SeaState],
     ocean: Ocean,
     workers: int,
@@ -224,7 +224,7 @@ def _simulate(
     return [ended[place] for place in np.argsort(np.concatenate(blocks))]
 
 
-def _blocks(ocean: Ocean, laws: Sequence[MovingLaw], most: int) -> list[Int[np.ndarray, " case"]]:
+def _blocks(ocean: Ocean, laws: Sequence[Law], most: int) -> list[Int[np.ndarray, " case"]]:
     """Cases that travel together: long crests and twines are summed up in other ways."""
     long = np.array([has_long_crests(waves) for waves in ocean.waves])
     kind = 2 * np.array([law == "morison" for law in laws]) + ~long
@@ -234,7 +234,7 @@ def _blocks(ocean: Ocean, laws: Sequence[MovingLaw], most: int) -> list[Int[np.n
 
 def _check(
     seas: list[SeaState],
-    laws: Sequence[MovingLaw],
+    laws: Sequence[Law],
     twine_drag: tuple[float, float] | None,
     tuning: Tuning,
     workers: int,

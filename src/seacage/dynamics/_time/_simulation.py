@@ -15,8 +15,9 @@ from seacage.dynamics._moored._choice import Mooring, moor, part
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
+from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import MovingLaw, Tuning
+from seacage.dynamics._physics._screens import Tuning
 from seacage.dynamics._physics._wake import wake_share
 from seacage.dynamics._settle import rest_shape
 from seacage.ocean import SeaState
@@ -66,7 +67,7 @@ class Simulation:
         # masses as of the whole cage: what parts changes no light node's
         return part(scale_mass(assembly, self.steps.time_step)[0], self.parted)
 
-    def net_laws(self, assembly: Assembly, laws: Sequence[MovingLaw], ocean: Ocean) -> list[NetLaw]:
+    def net_laws(self, assembly: Assembly, laws: Sequence[Law], ocean: Ocean) -> list[NetLaw]:
         """The law of the netting in each case's current, at the depths of the design shape."""
         found, depth = list[NetLaw](), assembly.panels.depth
         for law, current in zip(laws, ocean.current, strict=True):
@@ -86,7 +87,7 @@ class Simulation:
         return rest_shape(self.cage, mooring=self.mooring, hold_collar=self.hold_collar)
 
     def start(
-        self, assembly: Assembly, laws: Sequence[MovingLaw], seas: Sequence[SeaState]
+        self, assembly: Assembly, laws: Sequence[Law], seas: Sequence[SeaState]
     ) -> Float[np.ndarray, "case node 3"]:
         """Equilibria in the sea's surface current; it is only a start, so any will do.
 

@@ -18,6 +18,7 @@ from seacage.records._readers._column_map import parse_time, shipped_maps
 from seacage.records._readers._csv import number_in, recognise
 from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
+from seacage.records._readers._own_readers import read_by_own
 from seacage.records._readers._table import (
     PLAIN,
     WHITESPACE,
@@ -29,6 +30,7 @@ from seacage.records._readers._table import (
 )
 from seacage.records._times import microseconds
 
+_NO_MAP = "It needs no map: import it as it is."
 _ROWS = 20_000  # as many rows are looked at
 _DATES = ("%d.%m.%Y", "%d.%m.%y", "%d/%m/%Y", "%m/%d/%Y", "%Y/%m/%d", "%d-%m-%Y")
 _CLOCKS = ("%H:%M:%S", "%H:%M", "%H:%M:%S.%f", "%H.%M", "%I:%M:%S %p", "%I:%M %p")
@@ -116,14 +118,16 @@ def inspect_file(path: Path | str) -> Inspection:
     if is_netcdf(path):
         findings, map_text = inspect_netcdf(path)
         return Inspection(findings=findings, map_text=map_text)
+    if own := read_by_own(path, "buoy-1"):
+        finding = f"{path.name} has {len(own)} rows of {', '.join(own.values)}."
+        return Inspection(findings=(finding, *own.notes, _NO_MAP), map_text="")
     if path.suffix.lower() in {".parquet", ".json"}:
         layout, table = PLAIN, read_table(path, PLAIN)
     else:
         layout, text = _layout(path)
         if is_ndbc(text):
             finding = "is a file of NDBC, whose names, units, senses and zone are documented."
-            advice = "It needs no map: import it as it is."
-            return Inspection(findings=(f"{path.name} {finding}", advice), map_text="")
+            return Inspection(findings=(f"{path.name} {finding}", _NO_MAP), map_text="")
         table = text_table(path, text, layout)
     return _inspect_table(table, layout)
 

@@ -13,6 +13,7 @@ from seacage.records._readers._cf import NetcdfMap, is_netcdf, read_cf
 from seacage.records._readers._column_map import LEAD, ColumnMap, shipped_maps
 from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
+from seacage.records._readers._own_readers import read_by_own
 from seacage.records._record import Record
 
 _NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
@@ -52,6 +53,7 @@ def read_record(
     their header, their columns are ``time`` and door keys, or NDBC wrote them. Rows out of order
     are sorted, of rows that share a time the first is kept, and the notes say so. A bad value
     stays in its row, flagged; so does the last row of a text that ends without a line end.
+    A file that a reader of another package takes is read by that, unless a map is given.
     NetCDF files are those that ``write_record`` wrote, which say their own stream and carry
     their flags, or, with a ``NetcdfMap``, any that follow CF.
 
@@ -70,6 +72,8 @@ def read_record(
         To check the values of a foreign file against.
     """
     path = Path(path)
+    if columns is None and (own := read_by_own(path, stream)):
+        return _check(own, limits)
     if not is_netcdf(path) and not isinstance(columns, NetcdfMap):
         return _check(record_in(*split_table(path, columns), stream=stream), limits)
     if is_netcdf(path) and columns is None:

@@ -229,7 +229,7 @@ def slurm(
         )
     chosen = PlanOptions(**{one.name: given[one.name] for one in fields(PlanOptions)}).read()
     _options.read_cage_or_structure(given["cage"])
-    blocks = -(-len(chosen) // Simulator(method=given["method"]).block)
+    blocks = -(-len(chosen) // Simulator(method=given["method"], law=given["law"]).block)
     alone = [] if given["workers"] else ["--workers", "1"]
     template = files("seacage.service._cli").joinpath("slurm.sh").read_text("utf-8")
     script = template.format(

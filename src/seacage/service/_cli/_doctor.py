@@ -4,6 +4,7 @@ import importlib.util
 import platform
 import shutil
 import socket
+from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Annotated, Literal
@@ -54,6 +55,7 @@ def doctor(
         f"Port {port}": _port(port),
         "Demonstration": _demonstration(data),
         **{f"Extra {name}": _extra(name) for name in _EXTRAS},
+        **dict(_extensions()),
     }
     findings = [Finding(what=what, state=one[0], message=one[1]) for what, one in found.items()]
     report_findings("doctor", findings, code=Exit.FAILED)
@@ -133,6 +135,19 @@ def _extra(name: str) -> Found:
     if missing:
         return "absent", f"without {', '.join(missing)}: pip install 'seacage[{name}]'"
     return "ok", ", ".join(f"{one} {_version(one)}" for one in _EXTRAS[name])
+
+
+def _extensions() -> Iterator[tuple[str, Found]]:
+    """What other packages add, each loaded."""
+    from seacage.conventions import EXTENSION_GROUPS, InputError, extension_names, load_extension
+
+    for group in EXTENSION_GROUPS:
+        for name in extension_names(group):
+            what = f"{group.replace('_', ' ').removesuffix('s').capitalize()} {name}"
+            try:
+                yield what, ("ok", load_extension(group, name, object).source)
+            except InputError as error:
+                yield what, ("wrong", str(error))
 
 
 def _version(package: str) -> str:

@@ -24,8 +24,11 @@ CageName = Annotated[
     str, typer.Option("--cage", help="A cage that comes with seacage, or the path of a TOML file.")
 ]
 Law = Annotated[
-    Literal["kristiansen-faltinsen", "loland", "aarsnes", "morison"],
-    typer.Option(help="How the water loads the netting."),
+    str,
+    typer.Option(
+        help="How the water loads the netting: kristiansen-faltinsen, loland, aarsnes, in time "
+        "also morison, or an installed law."
+    ),
 ]
 Mooring = Annotated[
     Literal["catenary", "springs"],

@@ -13,7 +13,7 @@ from seacage.service._cli._options import OutFolder, SeaOptions, Seed
 
 if TYPE_CHECKING:
     from seacage.service._schemas._cages import LineLoad, PartedLine
-    from seacage.studies import SensorScore
+    from seacage.studies import BaselineScore, SensorScore
 
 
 @guard
@@ -22,6 +22,7 @@ def score(
     twin: Annotated[Path, typer.Option(exists=True, file_okay=False)],
     field: Annotated[Path, typer.Option(exists=True, file_okay=False)],
     out: OutFolder = None,
+    surrogate: str | None = None,
     seed: Seed = 0,
 ) -> None:
     """Score a twin on readings that did not teach it.
@@ -36,16 +37,20 @@ def score(
         twin: Folder of the twin.
         field: Folder of a field record.
         out: Folder for tables and figures.
+        surrogate: A surrogate of another package to score beside the twin, and baselines.
         seed: Of the bootstrap.
     """
     from seacage.records import FieldRecord
-    from seacage.studies import score_record
+    from seacage.studies import score_record, score_surrogate
     from seacage.twin import Twin
 
-    scores = score_record(Twin.read(twin), FieldRecord.read(field), out=out, seed=seed)
-    rows = error_rows(scores)
+    read, record = Twin.read(twin), FieldRecord.read(field)
+    others = score_surrogate(read, record, surrogate) if surrogate else ()
+    scores = score_record(read, record, out=out, seed=seed)
+    rows = error_rows(scores) + [row for one in others for row in _baseline_rows(one)]
     report(
-        {"sensors": [asdict(one) for one in scores], "written": None if out is None else str(out)},
+        {"sensors": [asdict(one) for one in scores], "written": None if out is None else str(out)}
+        | {"baselines": [asdict(one) for one in others]},
         rows=rows if out is None else [*rows, ("Written", str(out))],
     )
 
@@ -63,6 +68,18 @@ def error_rows(scores: "Iterable[SensorScore]") -> list[tuple[str, str]]:
             ),
         )
         for score in scores
+    ]
+
+
+def _baseline_rows(score: "BaselineScore") -> list[tuple[str, str]]:
+    """A line for each other learner, on ten-minute means."""
+    twin = f"{score.unit}, less the twin's {score.mae['twin']:.3g}:"
+    return [
+        (
+            f"{score.sensor}, {name}",
+            f"MAE {score.mae[name]:.3g} {twin} {o.mean:+.3g} ({o.low:+.3g} to {o.high:+.3g})",
+        )
+        for name, o in score.gain.items()
     ]
 
 

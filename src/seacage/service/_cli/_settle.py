@@ -1,7 +1,7 @@
 """``seacage settle``: one sea state."""
 
 from itertools import chain, repeat
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,7 +19,7 @@ def settle(
     sea: _options.SeaOptions,
     mean_waves: Annotated[bool, typer.Option("--mean-waves")] = False,
     cage: _options.CageName = "ace",
-    law: Literal["kristiansen-faltinsen", "loland", "aarsnes"] = "kristiansen-faltinsen",
+    law: _options.Law = "kristiansen-faltinsen",
     net: _options.LawOptions,
     mooring: _options.Mooring = "catenary",
     without: _options.Without = None,
@@ -35,17 +35,17 @@ def settle(
 
     Options:
         mean_waves: Take the waves in by their mean drag.
-        law: How the water loads the netting.
         out: Write the response as CF-NetCDF.
     """
-    from seacage.dynamics import LAWS
+    from seacage.conventions import extension_names
+    from seacage.dynamics import LAWS, law_label
     from seacage.dynamics import settle as settled
 
     net.check_files(out)
     state, subject = sea.state(), _options.read_cage_or_structure(cage)
     parted = without or []
     warnings = [*subject.warnings, *_options.warn_of(mooring)]
-    laws = (law,) if net.laws is None else LAWS
+    laws = (law,) if net.laws is None else (*LAWS, *extension_names("screen_laws"))
     response = settled(
         subject,
         [state] * len(laws) if net.laws else state,
@@ -69,7 +69,7 @@ def settle(
     if out is not None:
         from seacage.service._export import write_response
 
-        write_response(out, subject, state, law, response, net.changes)
+        write_response(out, subject, state, law_label(law), response, net.changes)
         answer["written"] = str(out)
     report_case("settle", answer, response.result, _rows(subject, response))
 

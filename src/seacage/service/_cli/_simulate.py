@@ -58,7 +58,8 @@ def simulate(
         animation: Write the first minute as a GIF.
     """
     from seacage.cage import Cage
-    from seacage.dynamics import MOVING_LAWS
+    from seacage.conventions import extension_names
+    from seacage.dynamics import MOVING_LAWS, law_label
     from seacage.dynamics import simulate as simulated
     from seacage.ocean import sample_waves
 
@@ -91,7 +92,7 @@ def simulate(
         "pieces": pieces,
     }
     drawn = [subject.drawn(n) for n in range(mooring_draws) if isinstance(subject, Cage)]
-    laws = (law,) if net.laws is None else MOVING_LAWS
+    laws = (law,) if net.laws is None else (*MOVING_LAWS, *extension_names("screen_laws"))
     with progress_bar() as progress:
         history = simulated(
             subject,
@@ -107,7 +108,7 @@ def simulate(
     _options.warn(remarks)
     warnings += remarks
     settings = {
-        "law": net.laws or law,
+        "law": net.laws or law_label(law),
         **net.changes,
         "mooring": mooring,
         "seed": seed,

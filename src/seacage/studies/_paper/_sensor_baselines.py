@@ -1,16 +1,17 @@
 """A sceptic's baselines beside level 2 of each sensor, from the readings that it learns from."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin
+from seacage.conventions import Extension, InputError, Origin, call_extension, load_extension
 from seacage.records import FieldRecord
 from seacage.studies._interval import Interval, by_day
 from seacage.studies._paper._boosted_trees import predict_by_trees
 from seacage.studies._sensor_scores import MEAN_S, PEOPLE
+from seacage.studies._split import unseen
 from seacage.surrogates import AR1, GaussianProcess
 from seacage.twin import Metocean, Training, Twin, align
 
@@ -30,18 +31,24 @@ class BaselineScore:
 
 
 def score_sensor_baselines(
-    twin: Twin, teaching: FieldRecord, held_out: FieldRecord, training: Training
+    twin: Twin,
+    teaching: FieldRecord,
+    held_out: FieldRecord,
+    training: Training,
+    learners: Sequence[Extension] = (),
 ) -> Iterator[BaselineScore]:
-    """Score the twin and the baselines at each sensor that has level 2."""
-    for name in twin.models.upper:
+    """Score the twin, the baselines and other learners at each sensor that has level 2."""
+    for name in (one for one in twin.models.upper if one in held_out.sensors):
         after = align(held_out, name, mean_s=MEAN_S, travel_time=twin.travel_time)
+        after = after.rows(after.metocean.known(twin.models.inputs))
         answer = twin.predict(after.metocean)
         column = answer.sensor_names.index(name)
         unit, factor = PEOPLE[answer.sensor_units[column]]
         found = {TWIN: answer.sensor.mean[:, column]}
-        found |= predict_by_sensor_baselines(twin, teaching, name, after.metocean, training)
+        given = twin, teaching, name, after.metocean, training
+        found |= predict_by_sensor_baselines(*given, learners=learners)
         error = {one: factor * np.abs(each - after.value) for one, each in found.items()}
-        over = {one: error[one] - error[TWIN] for one in SENSOR_BASELINES}
+        over = {one: error[one] - error[TWIN] for one in error if one != TWIN}
         day, seed = after.time.astype("datetime64[D]"), training.seed
         yield BaselineScore(
             sensor=name,
@@ -52,8 +59,41 @@ def score_sensor_baselines(
         )
 
 
+def score_surrogate(twin: Twin, field: FieldRecord, surrogate: str) -> tuple[BaselineScore, ...]:
+    """Score a surrogate of another package, and the baselines, beside a twin's level 2.
+
+    It is fitted to the readings of the twin's training windows, and scored on later days.
+
+    ``twin``: with level 2. ``field``: the record that it was trained on.
+    ``surrogate``: name of the entry point.
+
+    Raises InputError: no such surrogate, or no reading to fit it to or to score it on.
+    """
+    found = load_extension("surrogates", surrogate, Callable)
+    windows = twin.provenance.training_windows
+    training = Training(
+        inputs=twin.models.inputs,
+        high_fidelity_points=max((one.points for one in windows.values()), default=0),
+        seed=twin.provenance.seed,
+    )
+    held_out = unseen(field, windows)
+    scores = tuple(score_sensor_baselines(twin, field, held_out, training, [found]))
+    if not scores:
+        raise InputError(
+            "score: the twin has level 2 of no sensor of the record, so nothing can be scored "
+            "beside it. Train the twin on a record of sensors."
+        )
+    return scores
+
+
 def predict_by_sensor_baselines(
-    twin: Twin, teaching: FieldRecord, name: str, water: Metocean, training: Training
+    twin: Twin,
+    teaching: FieldRecord,
+    name: str,
+    water: Metocean,
+    training: Training,
+    *,
+    learners: Sequence[Extension] = (),
 ) -> dict[str, Float[np.ndarray, " row"]]:
     """Baselines' predictions of a sensor with level 2, by name [N] or [m].
 
@@ -71,10 +111,11 @@ def predict_by_sensor_baselines(
         mean_s=training.mean_s,
         travel_time=twin.travel_time,
     )
-    pairs = training.select(pairs)
+    pairs = training.select(pairs.rows(pairs.metocean.known(twin.models.inputs)))
     x, there = (one.features(twin.models.inputs) for one in (pairs.metocean, water))
     lower, restarts, value = twin.models.lower(name), training.restarts, pairs.value
-    line, at_line = (_columns(lower.predict(one).mean, one) for one in (x, there))
+    low, at_low = (lower.predict(one).mean for one in (x, there))
+    line, at_line = _columns(low, x), _columns(at_low, there)
     ar1 = AR1(restarts=restarts).fit([(x, value)], seed=training.seed, lower=lower)
     found = (
         GaussianProcess(restarts=restarts).fit(x, value, seed=training.seed).predict(there).mean,
@@ -82,7 +123,18 @@ def predict_by_sensor_baselines(
         at_line @ np.linalg.lstsq(line, value, rcond=None)[0],
         predict_by_trees(x, value, there),
     )
-    return dict(zip(SENSOR_BASELINES, found, strict=True))
+    given, at = (np.column_stack([x, low]), value, training.seed), np.column_stack([there, at_low])
+    theirs = {one.title: call_extension(one.title, _mean_by, one, given, at) for one in learners}
+    return {**dict(zip(SENSOR_BASELINES, found, strict=True)), **theirs}
+
+
+def _mean_by(
+    learner: Extension,
+    given: tuple[np.ndarray, np.ndarray, int],
+    at: Float[np.ndarray, "row feature"],
+) -> Float[np.ndarray, " row"]:
+    """Means by a surrogate of another package, whose last feature is level 1."""
+    return np.asarray_chkfinite(learner.value(*given).predict(at).mean).reshape(len(at))
 
 
 def _columns(

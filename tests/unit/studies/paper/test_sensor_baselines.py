@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.conventions import Origin
+from seacage.conventions import Extension, InputError, Origin
 from seacage.studies._paper._sensor_baselines import (
     SENSOR_BASELINES,
     TWIN,
@@ -14,8 +14,35 @@ from seacage.studies._paper._sensor_baselines import (
     score_sensor_baselines,
 )
 from seacage.studies._split import split
+from seacage.surrogates import Prediction
 from seacage.testing import stand_in_field, stand_in_twin
 from seacage.twin import Metocean, Training
+
+
+class Line:
+    """A line in the last feature, which is level 1, or what a broken learner answers."""
+
+    def __init__(self, x, y, _seed):
+        self.slope, self.shift = np.polyfit(x[:, -1], y, 1)
+
+    def predict(self, x):
+        mean = self.slope * x[:, -1] + self.shift
+        return Prediction(mean=mean, std=np.zeros_like(mean))
+
+
+def learner(value):
+    return Extension(source="lab 1.0", title="surrogate 'line' of lab 1.0", value=value)
+
+
+class Unknowing(Line):
+    def predict(self, x):
+        return Prediction(mean=np.full(len(x), np.nan), std=np.zeros(len(x)))
+
+
+class Short(Line):
+    def predict(self, x):
+        return super().predict(x[1:])
+
 
 TRAINING = Training(high_fidelity_points=60, days=2.0, restarts=0)
 
@@ -54,9 +81,13 @@ def test_a_line_through_level_1_is_found_by_the_baselines_that_have_it(field):
     made = replace(record, values={key: 2.0 * low + 1.0})
     new = replace(field, sensors={**field.sensors, name: made})
     some = water.rows(np.arange(len(field.buoy.time))[::40])
-    found = predict_by_sensor_baselines(twin, new, name, some, TRAINING)
+    given = twin, new, name, some, TRAINING
+    found = predict_by_sensor_baselines(*given, learners=[learner(Line)])
     true = 2.0 * lower.predict(some.features(("current",))).mean + 1.0
     spread = float(np.std(true))
-    for method in ("AR1", "linear"):
+    for method in ("AR1", "linear", "surrogate 'line' of lab 1.0"):
         assert np.sqrt(np.mean((found[method] - true) ** 2)) < 0.1 * spread
     assert all(np.isfinite(each).all() for each in found.values())
+    for broken in (Unknowing, Short, lambda *_: None):
+        with pytest.raises(InputError, match=r"surrogate 'line' of lab 1\.0 fails \("):
+            predict_by_sensor_baselines(*given, learners=[learner(broken)])
