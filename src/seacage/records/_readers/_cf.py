@@ -99,32 +99,18 @@ class NetcdfMap:
     """Declarations about a foreign NetCDF file that the file itself lacks.
 
     Raises RecordError: an unknown zone.
-
-    Parameters
-    ----------
-    title
-        What the file is, for messages.
-    origin
-        How its numbers were made; it must be said.
-    time_zone
-        Of its times, where a text in the file speaks of another than UTC, which is CF's.
-    depth_m
-        Which depth of a profile is read [m]; one that the file has.
-    range_m
-        Which bin of a profile by its distance from the instrument is read [m].
-    at
-        Index along each other dimension, such as ``rlat``.
-    columns
-        Variables by name, where their standard names do not tell; a component of a vector is
-        ``name.E`` or ``name.N``. Left empty, standard names decide.
     """
 
-    title: str = "NetCDF file"
-    origin: Origin | None = None
+    title: str = "NetCDF file"  # what the file is, for messages
+    origin: Origin | None = None  # how its numbers were made; it must be said
+    # Of its times, where a text in the file speaks of another than UTC, which is CF's
     time_zone: str | None = None
-    depth_m: float | None = None
-    range_m: float | None = None
+    depth_m: float | None = None  # which depth of a profile is read [m]; one that the file has
+    range_m: float | None = None  # which bin of a profile, from the instrument, is read [m]
+    # Index along each other dimension, such as ``rlat``
     at: Mapping[str, int] = field(default_factory=dict[str, int])
+    # Variables by name, where their standard names do not tell; a component of a vector is
+    # ``name.E`` or ``name.N``. Left empty, standard names decide.
     columns: tuple[_column_map.Column, ...] = ()
 
     def __post_init__(self) -> None:
@@ -138,7 +124,7 @@ class NetcdfMap:
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
-        """Read a map from TOML: ``kind = "netcdf"``, and keys as the parameters above.
+        """Read a map from TOML: ``kind = "netcdf"``, and keys as the fields above.
 
         Raises RecordError: no TOML, a misspelt key, a value that is refused or still ``?``.
         """

@@ -58,38 +58,24 @@ class Column:
     """One column of a foreign file.
 
     Raises RecordError: anything unknown, and a unit or a direction's sense that is not said.
-
-    Parameters
-    ----------
-    name
-        As the file's header spells it.
-    quantity
-        ``current_speed`` and ``current_direction``, or ``current_east`` and
-        ``current_north`` (where the water goes); ``hs``, ``tp``, ``wave_direction``,
-        ``tension`` or ``depth``.
-    unit
-        Of the file's numbers; there is no default.
-    sense
-        Of a direction: where it goes (``towards``) or comes from (``from``); no default.
-    north
-        Of a direction or a component: ``true``, as where it is left out, or ``magnetic``.
-    declination_deg
-        From true to magnetic north at the place and in the year, positive to the east: it is
-        added to the direction [deg]. Magnetic directions need it; NaN where only the user knows.
-    depth_m, range_m
-        Where the file holds a profile: of this column, or its distance from the instrument [m].
-    missing
-        Numbers that stand for no value, such as 99.0, in the file's unit.
     """
 
-    name: str
+    name: str  # as the file's header spells it
+    # ``current_speed`` and ``current_direction``, or ``current_east`` and ``current_north`` (where
+    # the water goes); ``hs``, ``tp``, ``wave_direction``, ``tension`` or ``depth``
     quantity: str
-    unit: str = ""
+    unit: str = ""  # of the file's numbers; there is no default
+    # Of a direction: where it goes (``towards``) or comes from (``from``); no default
     sense: str = ""
+    # Of a direction or a component: ``true``, as where it is left out, or ``magnetic``
     north: str = ""
+    # From true to magnetic north at the place and in the year, positive to the east: it is added to
+    # the direction [deg]. Magnetic directions need it; NaN where only the user knows.
     declination_deg: float | None = None
+    # Where the file holds a profile: of this column, or its distance from the instrument [m]
     depth_m: float | None = None
     range_m: float | None = None
+    # Numbers that stand for no value, such as 99.0, in the file's unit
     missing: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -167,55 +153,29 @@ class ColumnMap:
 
     Raises RecordError: a column or a quantity declared twice, one component of the current without
     the other, nothing to read, an unknown time zone, encoding, delimiter or decimal mark.
-
-    Parameters
-    ----------
-    title
-        What the file is, for messages.
-    origin
-        How its numbers were made.
-    time_column
-        The column of times, or several whose texts are joined by blanks.
-    time_format
-        ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``.
-    time_zone
-        Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, a named zone such
-        as ``Europe/Oslo``, or ``stated`` to refuse such times. ``?`` where only the user knows.
-    columns
-        Those that are read.
-    ignored
-        Those that are known and not read.
-    delimiter
-        Between cells: one character, or ``whitespace`` for any number of blanks.
-    depth_m, range_m
-        Which depth of a profile, or distance from the instrument, is read [m].
-    decimal
-        Between a number's whole and its part: ``.`` or ``,``.
-    encoding
-        Of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``.
-    skip_lines
-        Lines before the header.
-    header
-        Whether there is one; else columns are named by number, from 1.
-    daylight_saving
-        Whether to refuse times of a fixed offset that step as daylight saving does; false
-        confirms that the clock kept the offset.
     """
 
-    title: str
-    origin: Origin
+    title: str  # what the file is, for messages
+    origin: Origin  # how its numbers were made
+    # The column of times, or several whose texts are joined by blanks
     time_column: str | tuple[str, ...]
+    # ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``
     time_format: str
+    # Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, a named zone such as
+    # ``Europe/Oslo``, or ``stated`` to refuse such times; ``?`` where only the user knows
     time_zone: str
-    columns: tuple[Column, ...]
-    ignored: tuple[str, ...] = ()
-    delimiter: str = ","
+    columns: tuple[Column, ...]  # those that are read
+    ignored: tuple[str, ...] = ()  # those that are known and not read
+    delimiter: str = ","  # between cells: one character, or ``whitespace`` for any blanks
+    # Which depth of a profile, or distance from the instrument, is read [m]
     depth_m: float | None = None
     range_m: float | None = None
-    decimal: str = "."
-    encoding: str = "utf-8"
-    skip_lines: int = 0
-    header: bool = True
+    decimal: str = "."  # between a number's whole and its part: ``.`` or ``,``
+    encoding: str = "utf-8"  # of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``
+    skip_lines: int = 0  # lines before the header
+    header: bool = True  # whether there is one; else columns are named by number, from 1
+    # Whether to refuse times of a fixed offset that step as daylight saving does; false confirms
+    # that the clock kept the offset
     daylight_saving: bool = True
 
     def __post_init__(self) -> None:
