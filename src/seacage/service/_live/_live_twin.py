@@ -7,7 +7,7 @@ from datetime import datetime, timedelta
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk
-from seacage.service._live._clock import Clock, ClockFaults, Step, floor_time
+from seacage.service._live._clock import AbstractClock, ClockFaults, Step, floor_time
 from seacage.service._live._damage import DamageCounter
 from seacage.service._live._past import Past, answer_in, streams_of
 from seacage.service._store._adaptations import Adaptation, Refold
@@ -39,7 +39,7 @@ class LiveTwin:
         self,
         past: Past,  # of its cage, with the twin and the store
         *,
-        clock: Clock,
+        clock: AbstractClock,
         desk: AlarmDesk,  # where its alarms are assessed
         tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
