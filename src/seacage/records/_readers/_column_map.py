@@ -15,10 +15,10 @@ from zoneinfo import ZoneInfo
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin, RecordError, parse_toml, read_text
-from seacage.records import _toml
+from seacage.conventions import Origin, RecordError, read_text
 from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._readers._local_time import parse_zone
+from seacage.records._toml import TomlTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -243,29 +243,26 @@ class ColumnMap:
         ``where``: of the text, for messages.
         ``questions``: whether zone and declination may be ``?``, for ``answered``.
         """
-        table = parse_toml(text, where, refusal=RecordError)
+        table = TomlTable.parse(text, where)
         if not questions:
-            _toml.check_filled(table, where=where)
+            table.check_filled()
         usual = {"title": None, "delimiter": ",", "decimal": ".", "encoding": "utf-8"}
         known = ("origin", "time", "columns", "ignored", "depth_m", "range_m", "skip_lines")
-        _toml.check_names(table, (*usual, *known, "header"), where=where)
-        columns = _toml.table_of(table, "columns", where=where)
-        time, in_time = _toml.table_of(table, "time", where=where), f"{where}, [time]"
-        _toml.check_names(time, ("column", "format", "zone", "daylight_saving"), where=in_time)
-        rest: dict[str, Any] = {
-            **{one: _toml.text_of(table, one, where=where, default=usual[one]) for one in usual},
-            **{one: _toml.number_of(table, one, where=where) for one in ("depth_m", "range_m")},
-        }
+        table.check_names((*usual, *known, "header"))
+        time = table.table("time")
+        time.check_names(("column", "format", "zone", "daylight_saving"))
+        rest: dict[str, Any] = {one: table.number(one) for one in ("depth_m", "range_m")}
         return cls(
-            origin=parse_origin(_toml.text_of(table, "origin", where=where), where),
-            time_column=_toml.names_of(time, "column", where=in_time),
-            time_format=_toml.text_of(time, "format", where=in_time),
-            time_zone=_toml.text_of(time, "zone", where=in_time),
-            columns=tuple(parse_column(columns, name, where) for name in columns),
-            ignored=_toml.names_of(table, "ignored", where=where, default=()),
-            skip_lines=int(_toml.number_of(table, "skip_lines", where=where) or 0),
-            header=_toml.truth_of(table, "header", where=where),
-            daylight_saving=_toml.truth_of(time, "daylight_saving", where=in_time),
+            origin=parse_origin(table),
+            time_column=time.names("column"),
+            time_format=time.text("format"),
+            time_zone=time.text("zone"),
+            columns=parse_columns(table),
+            ignored=table.names("ignored", default=()),
+            skip_lines=int(table.number("skip_lines") or 0),
+            header=table.truth("header"),
+            daylight_saving=time.truth("daylight_saving"),
+            **{one: table.text(one, default=default) for one, default in usual.items()},
             **rest,
         )
 
@@ -406,37 +403,43 @@ def parse_time(text: str, form: str) -> datetime:
     return datetime.fromisoformat(text) if form == "iso" else datetime.strptime(text, form)  # noqa: DTZ007
 
 
-def parse_column(columns: _toml.Table, name: str, file: str) -> Column:
-    """A column as its table in a map declares it.
+def parse_columns(
+    table: TomlTable, *, default: Mapping[str, object] | None = None
+) -> tuple[Column, ...]:
+    """The columns that a map declares.
 
     Raises RecordError: a misspelt key or a refused value, said with the file's name.
     """
-    where = f"[columns.{name}]"
-    table = _toml.table_of(columns, name, where=file)
+    columns = table.table("columns", where=table.where, default=default)
+    parts = {one: columns.table(one, where=f"[columns.{one}]") for one in columns.values}
     try:
-        numbers = ("declination_deg", "depth_m", "range_m")
-        texts = ("unit", "sense", "north")
-        _toml.check_names(table, ("quantity", "missing", *texts, *numbers), where=where)
-        if table.get("declination_deg") == "?":  # of a shipped map; others are refused before
-            table = {**table, "declination_deg": math.nan}
-        rest: dict[str, Any] = {
-            **{one: _toml.text_of(table, one, where=where, default="") for one in texts},
-            **{one: _toml.number_of(table, one, where=where) for one in numbers},
-        }
-        missing = _toml.numbers_of(table, "missing", where=where)
-        quantity = _toml.text_of(table, "quantity", where=where)
-        return Column(name=name, quantity=quantity, missing=missing, **rest)
+        return tuple(_parse_column(part, name) for name, part in parts.items())
     except RecordError as error:
-        raise RecordError(f"{file}: {error}") from error
+        raise RecordError(f"{table.where}: {error}") from error
 
 
-def parse_origin(text: str, where: str) -> Origin:
+def _parse_column(table: TomlTable, name: str) -> Column:
+    numbers = ("declination_deg", "depth_m", "range_m")
+    texts = ("unit", "sense", "north")
+    table.check_names(("quantity", "missing", *texts, *numbers))
+    if table.values.get("declination_deg") == "?":  # of a shipped map; others are refused before
+        table = replace(table, values={**table.values, "declination_deg": math.nan})
+    rest: dict[str, Any] = {one: table.number(one) for one in numbers}
+    rest |= {one: table.text(one, default="") for one in texts}
+    missing, quantity = table.numbers("missing"), table.text("quantity")
+    return Column(name=name, quantity=quantity, missing=missing, **rest)
+
+
+def parse_origin(table: TomlTable) -> Origin:
     """How numbers were made, as a map says it. Raises RecordError: an unknown word."""
+    text = table.text("origin")
     try:
         return Origin(text)
     except ValueError as error:
         known = ", ".join(repr(str(origin)) for origin in Origin)
-        raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
+        raise RecordError(
+            f"{table.where}: origin = {text!r} is unknown. Say one of {known}."
+        ) from error
 
 
 def check_components(columns: Iterable[Column], *, where: str) -> None:
