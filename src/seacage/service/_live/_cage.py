@@ -262,12 +262,9 @@ class LiveCage:
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
     ) -> Alarm:
-        """Do what a person asks with an alarm; returns when that is on disk.
+        """Do what a person asks with an alarm, as of ``AlarmDesk``; returns when that is on disk.
 
-        ``alarm`` and ``how``: its name, and one of ``HANDLES``. ``who``, ``why``, ``seconds``: for
-        the journal, and how long to shelve [s].
-
-        Raises InputError: the action makes no sense as the alarm stands.
+        Raises InputError: there is no such alarm, or the action makes no sense with it.
         Raises StoreError: the disk did not take it.
         """
         async with self._stepping:
