@@ -17,6 +17,7 @@ from seacage.service._assembly import server
 from seacage.service._auth._token_store import Tokens
 from seacage.service._http._api import Service
 from seacage.service._live._cage import LiveCage
+from seacage.service._live._clock import AbstractClock
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._twin_shelf import TwinShelf
 from seacage.service._settings import Settings
@@ -30,10 +31,8 @@ httpx._transports.default.create_ssl_context = cache(httpx.create_ssl_context)
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
 
-class HandClock:
+class HandClock(AbstractClock):
     """Stands still until a test moves it: ``at`` goes on, and ``set`` sets it as a person would."""
-
-    speed = 1.0
 
     def __init__(self, at: datetime = NOON) -> None:
         self._at, self._elapsed_s = at, 0.0

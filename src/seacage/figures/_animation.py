@@ -66,13 +66,13 @@ class Motion:
 
 
 def write_animation(
-    path: Path,
+    path: Path,  # ends in ``.gif``
     cage: Cage,
-    motion: Motion,
+    motion: Motion,  # the loop closes without a jump where the sea repeats after its last moment
     *,
-    frames_per_second: float = 6.25,
-    width: int = 640,
-    progress: Progress | None = None,
+    frames_per_second: float = 6.25,  # six follow waves of 4 s and longer; the file grows with it
+    width: int = 640,  # of the picture [pixel]
+    progress: Progress | None = None,  # called as ("draw", done, total), in pictures
 ) -> Path:
     """Write a motion as a GIF that runs in real time and loops.
 
@@ -82,19 +82,6 @@ def write_animation(
     they are in still water.
 
     Raises InputError: another ending than ``.gif``.
-
-    Parameters
-    ----------
-    path
-        Ends in ``.gif``.
-    motion
-        The loop closes without a jump where the sea repeats after its last moment.
-    frames_per_second
-        Six follow waves of 4 s and longer; the file grows with it.
-    width
-        Of the picture [pixel].
-    progress
-        Called as ("draw", done, total), in pictures.
     """
     if path.suffix != ".gif":
         raise InputError(f"{path}: animations are written as GIF. End the name in .gif.")

@@ -19,29 +19,18 @@ _ARROW = {"arrowstyle": "-|>", "color": LOW, "lw": 1.6}
 
 def net_figure(
     cage: Cage,
-    node_position: Node3,
+    node_position: Node3,  # the shape to draw [m]
     *,
+    # What displacement is measured from and drawn as a ghost [m]; the design shape if None
     rest_position: Node3 | None = None,
-    bridle_tension: PerBridle | None = None,
+    bridle_tension: PerBridle | None = None,  # written beside each bridle in the top view [N]
+    # Its current is drawn as an arrow; without one the cage's prevailing direction is used
     sea: SeaState | None = None,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # where the shape comes from
 ) -> Figure:
     """Side and top view of one shape of the net, its bridles, frame and sensors.
 
     The side view looks across the current, which goes to the right; the top view has north up.
-
-    Parameters
-    ----------
-    node_position
-        The shape to draw [m].
-    rest_position
-        What displacement is measured from and drawn as a ghost [m]; the design shape if None.
-    bridle_tension
-        Written beside each bridle in the top view [N].
-    sea
-        Its current is drawn as an arrow; without one the cage's prevailing direction is used.
-    origin
-        Where the shape comes from.
     """
     rest = cage.design_position if rest_position is None else rest_position
     to = cage.site.current_to if sea is None else sea.current_to

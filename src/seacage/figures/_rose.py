@@ -16,29 +16,16 @@ _FAN = 0.8  # share of the least angle between bridles that the bars of one brid
 
 def tension_rose_figure(
     cage: Cage,
-    current_speed: Float[np.ndarray, " case"],
-    bridle_tension: Float[np.ndarray, "case bridle"],
+    current_speed: Float[np.ndarray, " case"],  # of each case [m/s]
+    bridle_tension: Float[np.ndarray, "case bridle"],  # mean, or at rest [N]
     *,
-    current_to: float,
+    current_to: float,  # where every current goes, the arrow [deg]
+    # Ends of a thin line over each bar [N]; none without them
     lowest: Float[np.ndarray, "case bridle"] | None = None,
     highest: Float[np.ndarray, "case bridle"] | None = None,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # where the tensions come from
 ) -> Figure:
-    """Utilisation of every bridle at its compass bearing, north up, one bar for each current.
-
-    Parameters
-    ----------
-    current_speed
-        Of each case [m/s].
-    bridle_tension
-        Mean, or at rest [N].
-    current_to
-        Where every current goes, the arrow [deg].
-    lowest, highest
-        Ends of a thin line over each bar [N]; none without them.
-    origin
-        Where the tensions come from.
-    """
+    """Utilisation of every bridle at its compass bearing, north up, one bar for each current."""
     if not len(current_speed):
         raise InputError("tension_rose_figure: there is no case to draw. Give one or more.")
     with page(5.6, 4.7) as figure:

@@ -18,29 +18,17 @@ _Extent = tuple[tuple[float, float], tuple[float, float]]
 
 def states_figure(
     cage: Cage,
-    current_speed: Float[np.ndarray, " case"],
-    node_position: Float[np.ndarray, "case node 3"],
+    current_speed: Float[np.ndarray, " case"],  # of each column [m/s]
+    node_position: Float[np.ndarray, "case node 3"],  # the shapes [m]
     *,
-    current_to: float,
+    current_to: float,  # where every current goes [deg]
+    # What displacement is measured from and drawn as a ghost [m]; the design shape if None
     rest_position: Float[np.ndarray, "node 3"] | None = None,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # where the shapes come from
 ) -> Figure:
     """One column for each current: the net from the side above, from the air below.
 
     The current goes to the right in all of them, and all share their scales and colours.
-
-    Parameters
-    ----------
-    current_speed
-        Of each column [m/s].
-    node_position
-        The shapes [m].
-    current_to
-        Where every current goes [deg].
-    rest_position
-        What displacement is measured from and drawn as a ghost [m]; the design shape if None.
-    origin
-        Where the shapes come from.
     """
     if not len(current_speed):
         raise InputError("states_figure: there is no state to draw. Give one current or more.")

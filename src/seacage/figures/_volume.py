@@ -41,25 +41,15 @@ give: marks to look at, not curves to meet."""
 
 
 def volume_figure(
-    current_speed: Float[np.ndarray, " case"],
+    current_speed: Float[np.ndarray, " case"],  # [m/s]
+    # By name of the line, such as a load law's [-]
     fraction: Mapping[str, Float[np.ndarray, " case"]],
     *,
+    # Published volumes of other cages, marked and named; none with ``()``
     measured: Sequence[VolumeMark] = MEASURED_VOLUMES,
-    origin: Origin = Origin.COMPUTED,
+    origin: Origin = Origin.COMPUTED,  # where the lines come from
 ) -> Figure:
-    """Volume over that in still water against the current.
-
-    Parameters
-    ----------
-    current_speed
-        [m/s].
-    fraction
-        By name of the line, such as a load law's [-].
-    measured
-        Published volumes of other cages, marked and named; none with ``()``.
-    origin
-        Where the lines come from.
-    """
+    """Volume over that in still water against the current."""
     with page(6.2, 3.5) as figure:
         axes = figure.subplots()
         for (colour, dash), (name, kept) in zip(_LOOKS, fraction.items(), strict=False):

@@ -21,28 +21,17 @@ class Clock:
     """Times that streams are brought to, and what counts at each.
 
     Raises InputError: a length that is not above zero, a lag that is no number.
-
-    Parameters
-    ----------
-    every_s
-        Between times, which are whole multiples of it since 1970 UTC [s].
-    window_s
-        How long the window is that is averaged over [s].
-    lag_s
-        How long before each time its window ends [s]; what the sea does at a buoy now and at
-        a cage later.
-    max_gap_s
-        A window with a longer stretch without a reading that can be used, its ends included,
-        has no mean [s].
-    suspect
-        Use suspect values too; their means are suspect.
     """
 
-    every_s: float
-    window_s: float
+    every_s: float  # between times, which are whole multiples of it since 1970 UTC [s]
+    window_s: float  # how long the window is that is averaged over [s]
+    # How long before each time its window ends: what the sea does at a buoy now and at a cage later
+    # [s]
     lag_s: float = 0.0
+    # A window with a longer stretch without a reading that can be used, its ends included, has no
+    # mean [s]
     max_gap_s: float
-    suspect: bool = True
+    suspect: bool = True  # use suspect values too; their means are suspect
 
     def __post_init__(self) -> None:
         for name in ("every_s", "window_s", "max_gap_s"):
@@ -66,11 +55,8 @@ def aligned(
     ``clock``: the times, and what counts at each.
     ``start``, ``end``: start <= t < end; where left out, the record's own.
 
-    Returns
-    -------
-    record
-        At every time of the clock, missing ones included; GOOD, SUSPECT where a suspect value
-        took part, MISSING where there is no mean.
+    Returns a record at every time of the clock, missing ones included; GOOD, SUSPECT where a
+    suspect value took part, MISSING where there is no mean.
     """
     times = _times(record, clock, start, end)
     values: dict[str, np.ndarray] = {}

@@ -24,30 +24,17 @@ class FieldRecord:
 
     Raises InputError: a buoy without a current, a sensor with other quantities or under another's
     name.
-
-    Parameters
-    ----------
-    cage
-        The cage's name.
-    buoy
-        Carries the current at least; waves where it measures them.
-    sensors
-        By their names in the cage's file; each carries ``tension_kn`` (a shackle) or
-        ``depth_m`` (a depth sensor). Each keeps its own times.
-    origin
-        How the sensors' numbers were made.
-    hidden_sha256
-        Of the hidden parameters behind a virtual field; None where it was measured.
-    notes
-        What the maker noticed, one sentence each.
     """
 
-    cage: str
-    buoy: Record
+    cage: str  # its name
+    buoy: Record  # carries the current at least; waves where it measures them
+    # By their names in the cage's file; each carries ``tension_kn`` (a shackle) or ``depth_m`` (a
+    # depth sensor), and keeps its own times
     sensors: Mapping[str, Record]
-    origin: Origin
+    origin: Origin  # how the sensors' numbers were made
+    # Of the hidden parameters behind a virtual field; None where it was measured
     hidden_sha256: str | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # what the maker noticed, one sentence each
 
     __repr__ = brief
 

@@ -22,30 +22,18 @@ class Record:
     """Values of one stream over time, in house units.
 
     Raises InputError: arrays of unequal length, unknown keys, times that do not ascend.
-
-    Parameters
-    ----------
-    stream
-        Such as ``buoy-1``.
-    time
-        UTC, datetime64[us], strictly ascending; irregular steps stay irregular.
-    values
-        By door key, float64, raw: a bad value stays as it came, and NaN stands for none.
-    flags
-        By the same keys, ``Flag`` as uint8; ``NOT_EVALUATED`` where left out.
-    origin
-        How the numbers were made.
-    notes
-        What reader and check noticed, one sentence each.
     """
 
-    stream: str
+    stream: str  # such as ``buoy-1``
+    # UTC, datetime64[us], strictly ascending; irregular steps stay irregular
     time: Shaped[np.ndarray, " t"]
-    # Lengths are compared below, with a sentence, so the types leave them open.
+    # By door key, float64, raw: a bad value stays as it came, and NaN stands for none. Lengths are
+    # compared below, with a sentence, so the types leave them open.
     values: Mapping[str, Shaped[np.ndarray, " _"]]
+    # By the same keys, ``Flag`` as uint8; ``NOT_EVALUATED`` where left out
     flags: Mapping[str, Shaped[np.ndarray, " _"]] = field(default_factory=dict[str, np.ndarray])
-    origin: Origin
-    notes: tuple[str, ...] = ()
+    origin: Origin  # how the numbers were made
+    notes: tuple[str, ...] = ()  # what reader and check noticed, one sentence each
 
     def __post_init__(self) -> None:
         check_stream(self.stream)

@@ -16,29 +16,16 @@ class Sample:
     """Values of one stream at one time, in house units.
 
     Raises InputError: an unknown key, a time without a zone, a stream's name that is no name.
-
-    Parameters
-    ----------
-    stream
-        Such as ``buoy-1``, ``depth-3``, ``shackle-2``.
-    t
-        When the source took it; any zone, kept as UTC.
-    values
-        By door key. Raw: a bad value stays as it came, and NaN stands for none.
-    flags
-        By the same keys; all ``NOT_EVALUATED`` until checked.
-    remarks
-        Why a value is not good: one sentence each, from the check.
-    seq
-        The source's own number of the sample, where it counts.
     """
 
-    stream: str
-    t: datetime
+    stream: str  # such as ``buoy-1``, ``depth-3``, ``shackle-2``
+    t: datetime  # when the source took it; any zone, kept as UTC
+    # By door key; raw: a bad value stays as it came, and NaN stands for none
     values: Mapping[str, float]
+    # By the same keys; all ``NOT_EVALUATED`` until checked
     flags: Mapping[str, Flag] = field(default_factory=dict[str, Flag])
-    remarks: tuple[str, ...] = ()
-    seq: int | None = None
+    remarks: tuple[str, ...] = ()  # why a value is not good: one sentence each, from the check
+    seq: int | None = None  # the source's own number of the sample, where it counts
 
     def __post_init__(self) -> None:
         check_stream(self.stream)

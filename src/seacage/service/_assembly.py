@@ -16,7 +16,7 @@ from seacage.service._http._api import Service, create_app
 from seacage.service._ingest._file_feed import FileTail
 from seacage.service._ingest._mqtt_feed import MqttFeed
 from seacage.service._live._cage import LiveCage
-from seacage.service._live._clock import Clock, FollowingClock, ReplayClock, WallClock
+from seacage.service._live._clock import AbstractClock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
 from seacage.service._live._retention import Retention
@@ -203,7 +203,7 @@ def _check_group(settings: Settings) -> None:
 
 def _clock(
     settings: Settings, store: Store, cages: tuple[str, ...], replay: Replay | None, speed: float
-) -> Clock:
+) -> AbstractClock:
     if replay is not None:
         return ReplayClock(replay.start, speed=speed)
     if settings.clock == "wall":

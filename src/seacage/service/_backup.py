@@ -151,19 +151,20 @@ class _Backup:
         self._add(BytesIO(content), len(content), name)
 
     def _add(self, file: BufferedIOBase, size: int, name: str) -> None:
-        entry, hashed = tarfile.TarInfo(name), _Hashed(file)
+        entry, hashed = tarfile.TarInfo(name), Hashed(file)
         entry.size, entry.mode = size, 0o600
         self._tar.addfile(entry, hashed)  # pyright: ignore[reportArgumentType]
         self.files[name] = hashed.sum.hexdigest()
 
 
-class _Hashed:
+class Hashed:
     """A file that is hashed as it is read."""
 
     def __init__(self, file: BufferedIOBase) -> None:
         self._file, self.sum = file, hashlib.sha256()
 
-    def read(self, size: int) -> bytes:
+    def read(self, size: int = -1, /) -> bytes:
+        """Read up to so many bytes."""
         piece = self._file.read(size)
         self.sum.update(piece)
         return piece

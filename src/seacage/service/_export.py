@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result
 from seacage.ocean import SeaState
-from seacage.records import KEYS, Record
+from seacage.records import KEYS, SEA_COLUMNS, Record
 from seacage.twin import Answer, Twin, interval_reason
 
 if TYPE_CHECKING:
@@ -314,11 +314,7 @@ def write_response(
             "law": law,
             **changes,
             **({"comment": " ".join(warnings)} if warnings else {}),
-            "current_speed_m_s": sea.current_speed,
-            "current_to_deg": sea.current_to,
-            "hs_m": sea.hs,
-            "tp_s": sea.tp or 0.0,
-            "wave_from_deg": sea.wave_from,
+            **{key: getattr(sea, name) or 0.0 for key, name in SEA_COLUMNS.items()},
         },
     )
     dataset.to_netcdf(path, engine="h5netcdf")  # pyright: ignore[reportUnknownMemberType]

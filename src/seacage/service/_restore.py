@@ -1,6 +1,5 @@
 """Restoration of a backup as a data folder."""
 
-import hashlib
 import json
 import os
 import re
@@ -9,16 +8,16 @@ import tarfile
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
+from io import BufferedIOBase
 from pathlib import Path, PurePosixPath
 
 from pydantic import ValidationError
 
 from seacage.conventions import InputError, read_text
 from seacage.dynamics import PHYSICS
-from seacage.service._backup import MANIFEST, MANIFEST_TYPE, SETTINGS, Manifest
+from seacage.service._backup import MANIFEST, MANIFEST_TYPE, SETTINGS, Hashed, Manifest
 from seacage.service._store._database._sqlite import is_served
 
-_PIECE = 1 << 20  # bytes that are read at once
 # A setting that names a file or a folder
 _PLACE = re.compile(r"""(\b(?:twin|archive|url|data)\s*=\s*)("[^"\\]*"|'[^']*')""")
 
@@ -93,14 +92,13 @@ def _extract_all(file: Path, to: Path, *, other_physics: bool) -> Manifest:
 
 def _extract(tar: tarfile.TarFile, entry: tarfile.TarInfo, to: Path, sha256: str) -> None:
     to.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-    found = hashlib.sha256()
     source = tar.extractfile(entry)
+    assert isinstance(source, BufferedIOBase)  # as that of any regular file
+    hashed = Hashed(source)
     descriptor = os.open(to, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     with os.fdopen(descriptor, "wb") as target:
-        while source and (piece := source.read(_PIECE)):
-            found.update(piece)
-            target.write(piece)
-    if found.hexdigest() != sha256:
+        shutil.copyfileobj(hashed, target)
+    if hashed.sum.hexdigest() != sha256:
         raise _ChangedError(f"{entry.name} is not as it was written")
 
 

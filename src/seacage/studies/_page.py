@@ -31,13 +31,14 @@ def render(template: str, **values: object) -> str:
         "number": number,
         "percent": percent,
         "names": join_names,
+        "embedded": _embedded,
         "mean": lambda values: float(np.mean(list(values))),
         "median": lambda values: float(np.median(list(values))),
     }
     return pages.get_template(template).render(values)
 
 
-def embed(figure: "Figure") -> str:
+def _embedded(figure: "Figure") -> str:
     """A figure as the address of an SVG image, which keeps its identifiers to itself."""
     return f"data:image/svg+xml;base64,{base64.b64encode(svg_text(figure).encode()).decode()}"
 

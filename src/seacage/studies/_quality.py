@@ -8,7 +8,7 @@ from jaxtyping import UInt8
 from seacage.conventions import Flag
 from seacage.figures import quality_figure
 from seacage.records import DEFAULT_LIMITS, Limits, Record, Verdict, alike, verdicts_on
-from seacage.studies._page import embed, render
+from seacage.studies._page import render
 
 _WORDS = {flag: flag.name.lower().replace("_", " ") for flag in Flag}
 _TROUBLES = (Flag.FAIL, Flag.MISSING, Flag.SUSPECT)  # the gravest first
@@ -65,7 +65,7 @@ def _stream(record: Record, limits: Limits) -> dict[str, object]:
             "Readings": f"{len(record):,}, of which {sound:,} carry no flag",
             "Usual step": _step(record),
         },
-        "picture": embed(quality_figure(record)) if len(record) else None,
+        "picture": quality_figure(record) if len(record) else None,
         "findings": [_finding(record, same) for same in worst_first],
         "shown": {
             _WORDS[flag]: flag

@@ -83,18 +83,10 @@ def score_points(
 ) -> Reliability:
     """Compare predicted clearances of points near the net with those of true nets.
 
-    Parameters
-    ----------
-    twin
-        Its inputs are what the buoy reported.
-    shapes
-        Held out from its training.
-    points
-        For each shape, scattered about the predicted net.
-    below
-        The distance of the event [m].
-    seed
-        Of the points.
+    ``twin``: its inputs are what the buoy reported.
+    ``shapes``: held out from its training.
+    ``points``, ``seed``: for each shape, scattered about the predicted net.
+    ``below``: the distance of the event [m].
     """
     random = np.random.default_rng(seed)
     foretold, happened, speed = list[np.ndarray](), list[np.ndarray](), list[float]()

@@ -6,9 +6,9 @@ import pytest
 pytest.importorskip("matplotlib")
 
 from seacage.figures import shape_error_figure
-from seacage.studies._page import embed, render
+from seacage.studies._page import render
 
-SOURCE = embed(shape_error_figure(np.array([0.5]), {"A": np.array([0.1])}))
+FIGURE = shape_error_figure(np.array([0.5]), {"A": np.array([0.1])})
 PARTS = "{% from 'parts.html' import bar, facts, picture, table %}"
 
 
@@ -55,9 +55,9 @@ def test_a_page_needs_nothing_beside_itself(filled):
     made = filled(
         "{% extends 'base.html' %}{% block content %}"
         "{% from 'parts.html' import picture %}"
-        "{% call picture(source, alternative) %}C{% endcall %}{% endblock %}",
+        "{% call picture(figure, alternative) %}C{% endcall %}{% endblock %}",
         title="Title",
-        source=SOURCE,
+        figure=FIGURE,
         alternative='a "drawing"',
     )
     assert made.startswith("<!doctype html>")

@@ -71,12 +71,8 @@ def check_sample(
     ``sample``: flags that it already carries are replaced.
     ``limits``: what to compare with.
 
-    Returns
-    -------
-    state
-        To check the stream's next sample with.
-    sample
-        With its flags, and with a remark for each value that is not good.
+    Returns the state to check the stream's next sample with, and the sample with its flags, and
+    with a remark for each value that is not good.
 
     Source: QARTOD manuals of IOOS: in-situ currents, surface waves, water level.
     """
@@ -143,10 +139,7 @@ def is_evaluated(sample: Sample) -> bool:
 def check_record(record: Record, limits: Limits = DEFAULT_LIMITS) -> Record:
     """Flag every value of a record, as ``check_sample`` would one by one, amendments made.
 
-    Returns
-    -------
-    record
-        With flags, and with a note per quantity, test and flag: how many, and the first.
+    Its notes then say for each quantity, test and flag how many, and the first.
     """
     flags = {key: np.full(len(record), Flag.GOOD, dtype=np.uint8) for key in record.values}
     verdicts = verdicts_on(record, limits)

@@ -24,66 +24,45 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Range:
-    """Gross range of one quantity, in the unit of its key; bounds included.
+    """Gross range of one quantity, in the unit of its key; bounds included."""
 
-    ``fail``: outside, the value is impossible: FAIL.
-    ``suspect``: outside, it is possible but worth a look: SUSPECT.
-    """
-
-    fail: tuple[float, float]
-    suspect: tuple[float, float]
+    fail: tuple[float, float]  # outside, the value is impossible: FAIL
+    suspect: tuple[float, float]  # outside, it is possible but worth a look: SUSPECT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Steadiness:
-    """How much and how little a group changes between readings that can be used.
+    """How much and how little a group changes between readings that can be used."""
 
-    Parameters
-    ----------
-    jump, rate
-        A change larger than ``jump + rate * seconds`` is SUSPECT: noise and waves, which lie
-        between any two readings however near, and what the sea can do meanwhile. Of a current
-        it is the length of the vector's change [m/s], of waves the change of hs [m], else of
-        the value. Peak period and wave direction may jump, from swell to wind sea and back.
-    gap_s
-        After a longer silence a value has nothing to be compared with: SUSPECT [s].
-    flat_suspect_s, flat_fail_s
-        All values of the group have repeated themselves exactly for as long: SUSPECT, and
-        FAIL where there are also at least 5 of them (3 for SUSPECT) [s].
-    spike_suspect, spike_fail
-        A reading that is farther than this from the one before and from the one after, and on
-        the same side of both, as a change is measured: SUSPECT, FAIL. It is only known when
-        the reading after has come, and ``rate`` times the seconds to it is allowed besides.
-    attenuated_s
-        How long the attenuated signal's window is [s].
-    attenuated_suspect, attenuated_fail
-        Over the whole window, and in at least 5 of its 64 parts, the group has stayed within
-        a range smaller than this, of a current in east and in north, of waves in hs: SUSPECT,
-        FAIL.
-    """
-
+    # A change larger than ``jump + rate * seconds`` is SUSPECT: noise and waves, which lie between
+    # any two readings however near, and what the sea can do meanwhile. Of a current it is the
+    # length of the vector's change [m/s], of waves the change of hs [m], else of the value. Peak
+    # period and wave direction may jump, from swell to wind sea and back.
     jump: float
     rate: float
-    gap_s: float
+    gap_s: float  # after a longer silence a value has nothing to be compared with: SUSPECT [s]
+    # All values of the group have repeated themselves exactly for as long: SUSPECT, and FAIL where
+    # there are also at least 5 of them (3 for SUSPECT) [s]
     flat_suspect_s: float
     flat_fail_s: float
+    # A reading that is farther than this from the one before and from the one after, and on the
+    # same side of both, as a change is measured: SUSPECT, FAIL. It is only known when the reading
+    # after has come, and ``rate`` times the seconds to it is allowed besides.
     spike_suspect: float = math.inf
     spike_fail: float = math.inf
-    attenuated_s: float = math.inf
+    attenuated_s: float = math.inf  # how long the attenuated signal's window is [s]
+    # Over the whole window, and in at least 5 of its 64 parts, the group has stayed within a range
+    # smaller than this, of a current in east and in north, of waves in hs: SUSPECT, FAIL
     attenuated_suspect: float = 0.0
     attenuated_fail: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Season:
-    """What a quantity is like in some months at one site.
+    """What a quantity is like in some months at one site."""
 
-    ``months``: 1 to 12, of the UTC time.
-    ``range``: as of the gross range.
-    """
-
-    months: tuple[int, ...]
-    range: Range
+    months: tuple[int, ...]  # 1 to 12, of the UTC time
+    range: Range  # as of the gross range
 
 
 _TABLES = read_packaged_table("seacage.records", "limits.toml")
@@ -96,16 +75,12 @@ _STEADINESS = {group: Steadiness(**one) for group, one in _TABLES["steadiness"].
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits that a stream is checked against; ``Limits()`` suits a moored cage and its buoy.
+    """Limits that a stream is checked against; ``Limits()`` suits a moored cage and its buoy."""
 
-    ``ranges``: by door key.
-    ``steadiness``: by group: ``current``, ``waves``, ``tension``, ``depth``.
-    ``climatology``: by door key: what is usual in the months of the year, where the site knows it;
-    no default.
-    """
-
-    ranges: Mapping[str, Range] = field(default_factory=_RANGES.copy)
+    ranges: Mapping[str, Range] = field(default_factory=_RANGES.copy)  # by door key
+    # By group: ``current``, ``waves``, ``tension``, ``depth``
     steadiness: Mapping[str, Steadiness] = field(default_factory=_STEADINESS.copy)
+    # By door key: what is usual in the months of the year, where the site knows it; no default
     climatology: Mapping[str, tuple[Season, ...]] = field(
         default_factory=dict[str, tuple[Season, ...]]
     )

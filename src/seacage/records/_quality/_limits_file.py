@@ -4,9 +4,9 @@ import math
 from dataclasses import replace
 from pathlib import Path
 
-from seacage.conventions import RecordError, parse_toml, read_text
+from seacage.conventions import RecordError, read_text
 from seacage.records._quality._limits import DEFAULT_LIMITS, Limits, Range, Season, Steadiness
-from seacage.records._toml import Table, check_names, number_of, numbers_of, table_of, tables_of
+from seacage.records._toml import TomlTable
 
 
 def read_limits(path: Path | str) -> Limits:
@@ -29,70 +29,57 @@ def read_limits(path: Path | str) -> Limits:
     Raises RecordError: no TOML, an unknown quantity, group or limit, a value that is no number.
     """
     where = str(path)
-    table = parse_toml(read_text(path, refusal=RecordError), where, refusal=RecordError)
+    table = TomlTable.parse(read_text(path, refusal=RecordError), where)
     usual, steady = DEFAULT_LIMITS.ranges, DEFAULT_LIMITS.steadiness
     known = {"ranges": usual, "steadiness": steady, "climatology": usual}
-    check_names(table, known, where=where)
-    parts = {name: table_of(table, name, where=where, default={}) for name in known}
+    table.check_names(known)
+    parts = {name: table.table(name, default={}) for name in known}
     for name, part in parts.items():
-        check_names(part, known[name], where=f"{where}, [{name}]")
-    ranges = {
-        key: parse_range(table_of(parts["ranges"], key, where=where), usual[key], where)
-        for key in parts["ranges"]
-    }
+        part.check_names(known[name])
+    ranges, groups, climate = parts.values()
+    spans = {key: ranges.table(key, where=f"{where}, [ranges.{key}]") for key in ranges.values}
+    steps = {key: groups.table(key, where=f"{where}, [steadiness.{key}]") for key in groups.values}
     return Limits(
-        ranges={**usual, **ranges},
-        steadiness={**steady, **_steadiness(parts["steadiness"], where)},
-        climatology=_climatology(parts["climatology"], where),
+        ranges={**usual, **{key: _range(span, usual[key]) for key, span in spans.items()}},
+        steadiness={**steady, **{key: _steadiness(one, key) for key, one in steps.items()}},
+        climatology={
+            key: tuple(map(_season, climate.tables(key, where=f"{where}, [[climatology.{key}]]")))
+            for key in climate.values
+        },
     )
 
 
-def parse_range(table: Table, usual: Range, where: str) -> Range:
-    """Bounds of a table; those that it leaves out stay the usual ones.
-
-    Raises RecordError: bounds that are not two ascending numbers.
-    """
-    check_names(table, ("fail", "suspect"), where=where)
+def _range(table: TomlTable, usual: Range, *others: str) -> Range:
+    """Bounds of a table, which may have other keys; what it leaves out stays as usual."""
+    table.check_names(("fail", "suspect", *others))
     return Range(
-        fail=_pair(table, "fail", where) or usual.fail,
-        suspect=_pair(table, "suspect", where) or usual.suspect,
+        fail=_pair(table, "fail") or usual.fail, suspect=_pair(table, "suspect") or usual.suspect
     )
 
 
-def _pair(table: Table, name: str, where: str) -> tuple[float, float] | None:
-    if name not in table:
+def _pair(table: TomlTable, name: str) -> tuple[float, float] | None:
+    if name not in table.values:
         return None
-    numbers = numbers_of(table, name, where=where)
+    numbers = table.numbers(name)
     if len(numbers) != 2 or not numbers[0] <= numbers[1]:
-        raise RecordError(f"{where}: {name} = {list(numbers)} is no range. Write [low, high].")
+        raise RecordError(
+            f"{table.where}: {name} = {list(numbers)} is no range. Write [low, high]."
+        )
     return numbers[0], numbers[1]
 
 
-def _steadiness(table: Table, where: str) -> dict[str, Steadiness]:
-    changed: dict[str, Steadiness] = {}
-    for group in table:
-        inside = f"{where}, [steadiness.{group}]"
-        given = table_of(table, group, where=where)
-        check_names(given, Steadiness.__slots__, where=inside)
-        numbers = {name: number_of(given, name, where=inside) or 0.0 for name in given}
-        changed[group] = replace(DEFAULT_LIMITS.steadiness[group], **numbers)
-    return changed
+def _steadiness(table: TomlTable, group: str) -> Steadiness:
+    table.check_names(Steadiness.__slots__)
+    numbers = {name: table.number(name) or 0.0 for name in table.values}
+    return replace(DEFAULT_LIMITS.steadiness[group], **numbers)
 
 
-def _climatology(table: Table, where: str) -> dict[str, tuple[Season, ...]]:
-    seasons: dict[str, tuple[Season, ...]] = {}
-    for key in table:
-        inside = f"{where}, [[climatology.{key}]]"
-        seasons[key] = tuple(_season(one, inside) for one in tables_of(table, key, where=inside))
-    return seasons
-
-
-def _season(table: Table, where: str) -> Season:
-    months = numbers_of(table, "months", where=where)
+def _season(table: TomlTable) -> Season:
+    months = table.numbers("months")
     if not months or not set(months) <= set(range(1, 13)):
-        raise RecordError(f"{where}: months = {list(months)} are none. Write some of 1 to 12.")
+        raise RecordError(
+            f"{table.where}: months = {list(months)} are none. Write some of 1 to 12."
+        )
     everything = Range(fail=(-math.inf, math.inf), suspect=(-math.inf, math.inf))
-    bounds = {name: value for name, value in table.items() if name != "months"}
-    return Season(
-        months=tuple(int(month) for month in months), range=parse_range(bounds, everything, where)
-    )
+    bounds = _range(table, everything, "months")
+    return Season(months=tuple(int(month) for month in months), range=bounds)

@@ -15,14 +15,14 @@ from zoneinfo import ZoneInfo
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.conventions import Origin, RecordError, parse_toml
+from seacage.conventions import Origin, RecordError
 from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._netcdf_file import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers import _column_map
 from seacage.records._readers._csv import in_order
 from seacage.records._readers._local_time import parse_zone
 from seacage.records._record import Record
-from seacage.records._toml import check_filled, check_names, number_of, table_of, text_of
+from seacage.records._toml import TomlTable
 
 if TYPE_CHECKING:
     import xarray
@@ -99,32 +99,18 @@ class NetcdfMap:
     """Declarations about a foreign NetCDF file that the file itself lacks.
 
     Raises RecordError: an unknown zone.
-
-    Parameters
-    ----------
-    title
-        What the file is, for messages.
-    origin
-        How its numbers were made; it must be said.
-    time_zone
-        Of its times, where a text in the file speaks of another than UTC, which is CF's.
-    depth_m
-        Which depth of a profile is read [m]; one that the file has.
-    range_m
-        Which bin of a profile by its distance from the instrument is read [m].
-    at
-        Index along each other dimension, such as ``rlat``.
-    columns
-        Variables by name, where their standard names do not tell; a component of a vector is
-        ``name.E`` or ``name.N``. Left empty, standard names decide.
     """
 
-    title: str = "NetCDF file"
-    origin: Origin | None = None
+    title: str = "NetCDF file"  # what the file is, for messages
+    origin: Origin | None = None  # how its numbers were made; it must be said
+    # Of its times, where a text in the file speaks of another than UTC, which is CF's
     time_zone: str | None = None
-    depth_m: float | None = None
-    range_m: float | None = None
+    depth_m: float | None = None  # which depth of a profile is read [m]; one that the file has
+    range_m: float | None = None  # which bin of a profile, from the instrument, is read [m]
+    # Index along each other dimension, such as ``rlat``
     at: Mapping[str, int] = field(default_factory=dict[str, int])
+    # Variables by name, where their standard names do not tell; a component of a vector is
+    # ``name.E`` or ``name.N``. Left empty, standard names decide.
     columns: tuple[_column_map.Column, ...] = ()
 
     def __post_init__(self) -> None:
@@ -138,23 +124,23 @@ class NetcdfMap:
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "NetCDF map") -> Self:
-        """Read a map from TOML: ``kind = "netcdf"``, and keys as the parameters above.
+        """Read a map from TOML: ``kind = "netcdf"``, and keys as the fields above.
 
         Raises RecordError: no TOML, a misspelt key, a value that is refused or still ``?``.
         """
-        table = parse_toml(text, where, refusal=RecordError)
-        check_filled(table, where=where)
+        table = TomlTable.parse(text, where)
+        table.check_filled()
         known = ("kind", "title", "origin", "time_zone", "depth_m", "range_m", "at", "columns")
-        check_names(table, known, where=where)
-        columns, at = (table_of(table, name, where=where, default={}) for name in ("columns", "at"))
+        table.check_names(known)
+        at = table.table("at", default={})
         return cls(
-            title=text_of(table, "title", where=where, default="NetCDF file"),
-            origin=_column_map.parse_origin(text_of(table, "origin", where=where), where),
-            time_zone=text_of(table, "time_zone", where=where) if "time_zone" in table else None,
-            depth_m=number_of(table, "depth_m", where=where),
-            range_m=number_of(table, "range_m", where=where),
-            at={name: int(number_of(at, name, where=where) or 0) for name in at},
-            columns=tuple(_column_map.parse_column(columns, name, where) for name in columns),
+            title=table.text("title", default="NetCDF file"),
+            origin=_column_map.parse_origin(table),
+            time_zone=table.text("time_zone") if "time_zone" in table.values else None,
+            depth_m=table.number("depth_m"),
+            range_m=table.number("range_m"),
+            at={name: int(at.number(name) or 0) for name in at.values},
+            columns=_column_map.parse_columns(table, default={}),
         )
 
 

@@ -15,10 +15,10 @@ from zoneinfo import ZoneInfo
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin, RecordError, parse_toml, read_text
-from seacage.records import _toml
+from seacage.conventions import Origin, RecordError, read_text
 from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
 from seacage.records._readers._local_time import parse_zone
+from seacage.records._toml import TomlTable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,38 +58,24 @@ class Column:
     """One column of a foreign file.
 
     Raises RecordError: anything unknown, and a unit or a direction's sense that is not said.
-
-    Parameters
-    ----------
-    name
-        As the file's header spells it.
-    quantity
-        ``current_speed`` and ``current_direction``, or ``current_east`` and
-        ``current_north`` (where the water goes); ``hs``, ``tp``, ``wave_direction``,
-        ``tension`` or ``depth``.
-    unit
-        Of the file's numbers; there is no default.
-    sense
-        Of a direction: where it goes (``towards``) or comes from (``from``); no default.
-    north
-        Of a direction or a component: ``true``, as where it is left out, or ``magnetic``.
-    declination_deg
-        From true to magnetic north at the place and in the year, positive to the east: it is
-        added to the direction [deg]. Magnetic directions need it; NaN where only the user knows.
-    depth_m, range_m
-        Where the file holds a profile: of this column, or its distance from the instrument [m].
-    missing
-        Numbers that stand for no value, such as 99.0, in the file's unit.
     """
 
-    name: str
+    name: str  # as the file's header spells it
+    # ``current_speed`` and ``current_direction``, or ``current_east`` and ``current_north`` (where
+    # the water goes); ``hs``, ``tp``, ``wave_direction``, ``tension`` or ``depth``
     quantity: str
-    unit: str = ""
+    unit: str = ""  # of the file's numbers; there is no default
+    # Of a direction: where it goes (``towards``) or comes from (``from``); no default
     sense: str = ""
+    # Of a direction or a component: ``true``, as where it is left out, or ``magnetic``
     north: str = ""
+    # From true to magnetic north at the place and in the year, positive to the east: it is added to
+    # the direction [deg]. Magnetic directions need it; NaN where only the user knows.
     declination_deg: float | None = None
+    # Where the file holds a profile: of this column, or its distance from the instrument [m]
     depth_m: float | None = None
     range_m: float | None = None
+    # Numbers that stand for no value, such as 99.0, in the file's unit
     missing: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -167,55 +153,29 @@ class ColumnMap:
 
     Raises RecordError: a column or a quantity declared twice, one component of the current without
     the other, nothing to read, an unknown time zone, encoding, delimiter or decimal mark.
-
-    Parameters
-    ----------
-    title
-        What the file is, for messages.
-    origin
-        How its numbers were made.
-    time_column
-        The column of times, or several whose texts are joined by blanks.
-    time_format
-        ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``.
-    time_zone
-        Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, a named zone such
-        as ``Europe/Oslo``, or ``stated`` to refuse such times. ``?`` where only the user knows.
-    columns
-        Those that are read.
-    ignored
-        Those that are known and not read.
-    delimiter
-        Between cells: one character, or ``whitespace`` for any number of blanks.
-    depth_m, range_m
-        Which depth of a profile, or distance from the instrument, is read [m].
-    decimal
-        Between a number's whole and its part: ``.`` or ``,``.
-    encoding
-        Of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``.
-    skip_lines
-        Lines before the header.
-    header
-        Whether there is one; else columns are named by number, from 1.
-    daylight_saving
-        Whether to refuse times of a fixed offset that step as daylight saving does; false
-        confirms that the clock kept the offset.
     """
 
-    title: str
-    origin: Origin
+    title: str  # what the file is, for messages
+    origin: Origin  # how its numbers were made
+    # The column of times, or several whose texts are joined by blanks
     time_column: str | tuple[str, ...]
+    # ``iso``, ``unix`` (seconds since 1970), or a format of ``datetime.strptime``
     time_format: str
+    # Of times that do not say theirs: ``UTC``, an offset such as ``+01:00``, a named zone such as
+    # ``Europe/Oslo``, or ``stated`` to refuse such times; ``?`` where only the user knows
     time_zone: str
-    columns: tuple[Column, ...]
-    ignored: tuple[str, ...] = ()
-    delimiter: str = ","
+    columns: tuple[Column, ...]  # those that are read
+    ignored: tuple[str, ...] = ()  # those that are known and not read
+    delimiter: str = ","  # between cells: one character, or ``whitespace`` for any blanks
+    # Which depth of a profile, or distance from the instrument, is read [m]
     depth_m: float | None = None
     range_m: float | None = None
-    decimal: str = "."
-    encoding: str = "utf-8"
-    skip_lines: int = 0
-    header: bool = True
+    decimal: str = "."  # between a number's whole and its part: ``.`` or ``,``
+    encoding: str = "utf-8"  # of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``
+    skip_lines: int = 0  # lines before the header
+    header: bool = True  # whether there is one; else columns are named by number, from 1
+    # Whether to refuse times of a fixed offset that step as daylight saving does; false confirms
+    # that the clock kept the offset
     daylight_saving: bool = True
 
     def __post_init__(self) -> None:
@@ -283,29 +243,26 @@ class ColumnMap:
         ``where``: of the text, for messages.
         ``questions``: whether zone and declination may be ``?``, for ``answered``.
         """
-        table = parse_toml(text, where, refusal=RecordError)
+        table = TomlTable.parse(text, where)
         if not questions:
-            _toml.check_filled(table, where=where)
+            table.check_filled()
         usual = {"title": None, "delimiter": ",", "decimal": ".", "encoding": "utf-8"}
         known = ("origin", "time", "columns", "ignored", "depth_m", "range_m", "skip_lines")
-        _toml.check_names(table, (*usual, *known, "header"), where=where)
-        columns = _toml.table_of(table, "columns", where=where)
-        time, in_time = _toml.table_of(table, "time", where=where), f"{where}, [time]"
-        _toml.check_names(time, ("column", "format", "zone", "daylight_saving"), where=in_time)
-        rest: dict[str, Any] = {
-            **{one: _toml.text_of(table, one, where=where, default=usual[one]) for one in usual},
-            **{one: _toml.number_of(table, one, where=where) for one in ("depth_m", "range_m")},
-        }
+        table.check_names((*usual, *known, "header"))
+        time = table.table("time")
+        time.check_names(("column", "format", "zone", "daylight_saving"))
+        rest: dict[str, Any] = {one: table.number(one) for one in ("depth_m", "range_m")}
         return cls(
-            origin=parse_origin(_toml.text_of(table, "origin", where=where), where),
-            time_column=_toml.names_of(time, "column", where=in_time),
-            time_format=_toml.text_of(time, "format", where=in_time),
-            time_zone=_toml.text_of(time, "zone", where=in_time),
-            columns=tuple(parse_column(columns, name, where) for name in columns),
-            ignored=_toml.names_of(table, "ignored", where=where, default=()),
-            skip_lines=int(_toml.number_of(table, "skip_lines", where=where) or 0),
-            header=_toml.truth_of(table, "header", where=where),
-            daylight_saving=_toml.truth_of(time, "daylight_saving", where=in_time),
+            origin=parse_origin(table),
+            time_column=time.names("column"),
+            time_format=time.text("format"),
+            time_zone=time.text("zone"),
+            columns=parse_columns(table),
+            ignored=table.names("ignored", default=()),
+            skip_lines=int(table.number("skip_lines") or 0),
+            header=table.truth("header"),
+            daylight_saving=time.truth("daylight_saving"),
+            **{one: table.text(one, default=default) for one, default in usual.items()},
             **rest,
         )
 
@@ -446,37 +403,43 @@ def parse_time(text: str, form: str) -> datetime:
     return datetime.fromisoformat(text) if form == "iso" else datetime.strptime(text, form)  # noqa: DTZ007
 
 
-def parse_column(columns: _toml.Table, name: str, file: str) -> Column:
-    """A column as its table in a map declares it.
+def parse_columns(
+    table: TomlTable, *, default: Mapping[str, object] | None = None
+) -> tuple[Column, ...]:
+    """The columns that a map declares.
 
     Raises RecordError: a misspelt key or a refused value, said with the file's name.
     """
-    where = f"[columns.{name}]"
-    table = _toml.table_of(columns, name, where=file)
+    columns = table.table("columns", where=table.where, default=default)
+    parts = {one: columns.table(one, where=f"[columns.{one}]") for one in columns.values}
     try:
-        numbers = ("declination_deg", "depth_m", "range_m")
-        texts = ("unit", "sense", "north")
-        _toml.check_names(table, ("quantity", "missing", *texts, *numbers), where=where)
-        if table.get("declination_deg") == "?":  # of a shipped map; others are refused before
-            table = {**table, "declination_deg": math.nan}
-        rest: dict[str, Any] = {
-            **{one: _toml.text_of(table, one, where=where, default="") for one in texts},
-            **{one: _toml.number_of(table, one, where=where) for one in numbers},
-        }
-        missing = _toml.numbers_of(table, "missing", where=where)
-        quantity = _toml.text_of(table, "quantity", where=where)
-        return Column(name=name, quantity=quantity, missing=missing, **rest)
+        return tuple(_parse_column(part, name) for name, part in parts.items())
     except RecordError as error:
-        raise RecordError(f"{file}: {error}") from error
+        raise RecordError(f"{table.where}: {error}") from error
 
 
-def parse_origin(text: str, where: str) -> Origin:
+def _parse_column(table: TomlTable, name: str) -> Column:
+    numbers = ("declination_deg", "depth_m", "range_m")
+    texts = ("unit", "sense", "north")
+    table.check_names(("quantity", "missing", *texts, *numbers))
+    if table.values.get("declination_deg") == "?":  # of a shipped map; others are refused before
+        table = replace(table, values={**table.values, "declination_deg": math.nan})
+    rest: dict[str, Any] = {one: table.number(one) for one in numbers}
+    rest |= {one: table.text(one, default="") for one in texts}
+    missing, quantity = table.numbers("missing"), table.text("quantity")
+    return Column(name=name, quantity=quantity, missing=missing, **rest)
+
+
+def parse_origin(table: TomlTable) -> Origin:
     """How numbers were made, as a map says it. Raises RecordError: an unknown word."""
+    text = table.text("origin")
     try:
         return Origin(text)
     except ValueError as error:
         known = ", ".join(repr(str(origin)) for origin in Origin)
-        raise RecordError(f"{where}: origin = {text!r} is unknown. Say one of {known}.") from error
+        raise RecordError(
+            f"{table.where}: origin = {text!r} is unknown. Say one of {known}."
+        ) from error
 
 
 def check_components(columns: Iterable[Column], *, where: str) -> None:

@@ -58,13 +58,13 @@ def split_table(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap
 
 
 def read_rows(
-    path: Path,
-    header: str,
-    rows: str,
+    path: Path,  # of the file, for messages
+    header: str,  # its line, where there is one
+    rows: str,  # whole lines from anywhere below it
     *,
-    columns: ColumnMap | None = None,
-    first_line: int = 2,
-    stream: str = "buoy-1",
+    columns: ColumnMap | None = None,  # what the columns mean; by the header where None
+    first_line: int = 2,  # on which line of the file the rows begin, for messages
+    stream: str = "buoy-1",  # what to call the stream
 ) -> Record:
     """Read some rows of a text table under its header, as ``read_record`` reads all of them.
 
@@ -72,19 +72,6 @@ def read_rows(
 
     Raises RecordError: as ``read_record``; also where there is no row. A header that does not fit
     its map is not looked at, see ``check_rows``.
-
-    Parameters
-    ----------
-    path
-        Of the file, for messages.
-    header, rows
-        The header's line, where there is one, and whole lines from anywhere below it.
-    columns
-        What the columns mean; by the header where None.
-    first_line
-        On which line of the file the rows begin, for messages.
-    stream
-        What to call the stream.
     """
     layout = _layout(columns)
     between = "\n" * max(layout.header, first_line - 1)  # blank lines are skipped, and counted

@@ -94,11 +94,11 @@ class _Rows(NamedTuple):
 
 
 def utc_times(
-    times: Sequence[datetime],
-    zone: tzinfo | None,
+    times: Sequence[datetime],  # as the cells have them, with or without a zone
+    zone: tzinfo | None,  # of those without one
     *,
-    may_change: bool,
-    row: Callable[[int], str],
+    may_change: bool,  # refuse changed clocks where the offset is fixed
+    row: Callable[[int], str],  # name of a row in messages, by its index
 ) -> Shaped[np.ndarray, " t"]:
     """Times of a file's rows, in the order of the file, as UTC.
 
@@ -108,17 +108,6 @@ def utc_times(
     Raises RecordError: a time that the zone does not have, or has twice where the order of rows
     does not tell which; and where a fixed offset is declared, a step of an hour in the night in
     which a widely used zone changes its clocks.
-
-    Parameters
-    ----------
-    times
-        As the cells have them, with or without a zone.
-    zone
-        Of those without one.
-    may_change
-        Refuse changed clocks where the offset is fixed.
-    row
-        Name of a row in messages, by its index.
     """
     rows = _rows(times, zone)
     if not isinstance(zone, ZoneInfo):

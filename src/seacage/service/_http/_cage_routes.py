@@ -192,9 +192,7 @@ def get_history(
     A sensor that read more often is told by means of one or ten minutes. Intervals are as
     trained.
     """
-    past, span = live.past, {"start": start, "end": end}
-    history = history_between(past.twin, live.store, live.name, **span, limit=limit)
-    history = history.model_copy(update={"twin": past.id})
+    history = history_between(live.past, start=start, end=end, limit=limit)
     return StreamingResponse(_history_text(history), media_type="application/json")
 
 

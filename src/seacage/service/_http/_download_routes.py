@@ -29,7 +29,6 @@ from seacage.service._http._dependencies import (
     refusal,
 )
 from seacage.service._live._cage import LiveCage
-from seacage.service._live._past import buoy_record, buoy_samples_before
 from seacage.service._schemas._base import EXAMPLE_T
 
 _PIECE = 1 << 16  # of a file, sent at once [bytes]
@@ -100,13 +99,13 @@ def download_netcdf(
 def _history(
     live: LiveCage, start: datetime | None, end: datetime | None, limit: int
 ) -> Iterator[Replayed]:
-    twin = live.twin
+    past = live.past
     samples = live.store.samples(
-        live.name, stream=twin.buoy, start=start, end=end, limit=limit, newest=True
+        live.name, stream=past.twin.buoy, start=start, end=end, limit=limit, newest=True
     )
-    sent = buoy_samples_before(twin, live.store, live.name, samples)
-    rows, among = (buoy_record(twin, some) for some in (samples, sent))
-    return _begin(replay_in_blocks(twin, rows, among=among))
+    sent = past.buoy_samples_before(samples)
+    rows, among = (past.buoy_record(some) for some in (samples, sent))
+    return _begin(replay_in_blocks(past.twin, rows, among=among))
 
 
 def _begin(parts: Iterator[_Part]) -> Iterator[_Part]:

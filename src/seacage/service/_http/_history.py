@@ -13,12 +13,11 @@ from seacage.records import Sample
 from seacage.service._export import replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
 from seacage.service._live._clock import floor_time
-from seacage.service._live._past import buoy_record, buoy_samples_around, buoy_samples_before
+from seacage.service._live._past import Past
 from seacage.service._schemas._samples import AggregateOut
 from seacage.service._schemas._state import History, Measured
 from seacage.service._store._aggregates import WIDTHS_S
-from seacage.service._store._store import Store
-from seacage.twin import Answer, Twin
+from seacage.twin import Answer
 
 # Readings that one history looks at one by one; of more, spans of minutes are looked at
 READ_LIMIT = 10_000
@@ -28,44 +27,45 @@ _SPEED = "current_speed_m_s"
 
 
 def history_between(
-    twin: Twin, store: Store, cage: str, *, start: datetime | None, end: datetime | None, limit: int
+    past: Past, *, start: datetime | None, end: datetime | None, limit: int
 ) -> History:
-    """Answer to a buoy's readings in a span, and show what the sensors read.
+    """Answer to a cage's buoy's readings in a span, and show what the sensors read.
 
     Where there are more than ``limit`` readings, those stand for the span that tell most of it,
     as in ``telling``; of very many it is one reading of each of the minutes, or of the tens of
     minutes, that tell most. Intervals are as trained: what the sensors' later readings made of
     them, the states of the time say, and folding one for each point would take too long.
     """
-    span = _Span(store=store, cage=cage, start=start, end=end, limit=limit)
+    span, twin = _Span(past=past, start=start, end=end, limit=limit), past.twin
     read = span.readings(twin.buoy, READ_LIMIT + 1)
     if len(read) > READ_LIMIT:
         few = span.telling_readings(read[0])
-        sent, thinned = buoy_samples_around(twin, store, cage, few), True
+        sent, thinned = past.buoy_samples_around(few), True
     else:
         once = list({sample.t: sample for sample in read}.values())  # of one time the last counts
         few = [once[row] for row in telling(_speeds(once), limit)]
-        sent, thinned = buoy_samples_before(twin, store, cage, once), len(few) < len(once)
-    buoy, among = buoy_record(twin, few), buoy_record(twin, sent)
+        sent, thinned = past.buoy_samples_before(once), len(few) < len(once)
+    buoy, among = past.buoy_record(few), past.buoy_record(sent)
     measured = {sensor: span.measurements(sensor) for sensor in twin.sensor_names}
     answers = [one.answer.without_nodes() for one in replay_in_blocks(twin, buoy, among=among)]
-    return history_of(buoy, Answer.join(*answers), measured, thinned=thinned)
+    history = history_of(buoy, Answer.join(*answers), measured, thinned=thinned)
+    return history.model_copy(update={"twin": past.id})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Span:
     """The stored readings of a cage in a span of time, of which ``limit`` at most are shown."""
 
-    store: Store
-    cage: str
+    past: Past
     start: datetime | None
     end: datetime | None
     limit: int
 
     def readings(self, stream: str, limit: int) -> list[Sample]:
         """The first readings of a stream."""
-        return self.store.samples(
-            self.cage, stream=stream, start=self.start, end=self.end, limit=limit
+        past = self.past
+        return past.store.samples(
+            past.cage, stream=stream, start=self.start, end=self.end, limit=limit
         )
 
     def measurements(self, sensor: str) -> Measured:
@@ -100,7 +100,7 @@ class _Span:
 
     def _telling_spans(self, first: Sample, key: str) -> tuple[timedelta, list[AggregateOut]]:
         """Of the minutes or tens of minutes from a first reading on, those that tell most."""
-        store, cage, end = self.store, self.cage, self.end
+        store, cage, end = self.past.store, self.past.cage, self.end
         (last,) = store.samples(cage, stream=first.stream, end=end, limit=1, newest=True)
         length_s = (last.t - first.t).total_seconds()
         width_s = next((one for one in WIDTHS_S if length_s <= one * self.limit), WIDTHS_S[-1])

@@ -5,6 +5,7 @@ import math
 from fastapi import APIRouter, Response
 
 from seacage.ocean import SeaState
+from seacage.records import SEA_COLUMNS
 from seacage.service._http._cage_routes import FRAME
 from seacage.service._http._dependencies import READ, WRITE, At, Live, may_read
 from seacage.service._live._answers import state_of, what_if_parted
@@ -35,13 +36,7 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
     from seas whose period follows their height. The answer's ``water`` says what of the question
     counted: null is what the twin knows nothing of.
     """
-    sea = SeaState(
-        current_speed=body.current_speed_m_s,
-        current_to=body.current_to_deg,
-        hs=body.hs_m,
-        tp=body.tp_s,
-        wave_from=body.wave_from_deg,
-    )
+    sea = SeaState(**{name: getattr(body, key) for key, name in SEA_COLUMNS.items()})
     water, past, now = Metocean.of(sea), live.past, live.clock.now()
     twin = past.twin
     answered = Answered(t=now, answer=twin.predict(water), metocean=water, input_age_s=0.0)

@@ -20,7 +20,7 @@ from seacage.conventions import InputError, ModelError, SeacageError
 from seacage.records import DEFAULT_LIMITS, Sample
 from seacage.service._live._alarm_desk import AlarmDesk
 from seacage.service._live._answers import state_of, topology_of
-from seacage.service._live._clock import Clock, FollowingClock, latest_allowed
+from seacage.service._live._clock import AbstractClock, FollowingClock
 from seacage.service._live._concerns import concerns_of
 from seacage.service._live._frame import Flags, frame_of
 from seacage.service._live._live_twin import LiveTwin
@@ -105,7 +105,7 @@ class LiveCage:
         # the same store
         twin: Twin,
         store: Store,
-        clock: Clock,
+        clock: AbstractClock,
         metrics: Metrics,  # where steps and samples are counted
         tick_s: float = 2.0,  # longest pause between two looks at the clock [s of the wall]
         # Limits of the alarms with a twin; None for the usual
@@ -151,7 +151,7 @@ class LiveCage:
     @property
     def latest_allowed(self) -> datetime:
         """The time after which a sample's own clock must be wrong."""
-        return latest_allowed(self.clock, self.twin.timeouts.future_s)
+        return self.clock.latest_allowed(self.twin.timeouts.future_s)
 
     def state_of(
         self,
@@ -262,12 +262,9 @@ class LiveCage:
     async def handle(
         self, alarm: str, how: str, *, who: str, why: str, seconds: float | None
     ) -> Alarm:
-        """Do what a person asks with an alarm; returns when that is on disk.
+        """Do what a person asks with an alarm, as of ``AlarmDesk``; returns when that is on disk.
 
-        ``alarm`` and ``how``: its name, and one of ``HANDLES``. ``who``, ``why``, ``seconds``: for
-        the journal, and how long to shelve [s].
-
-        Raises InputError: the action makes no sense as the alarm stands.
+        Raises InputError: there is no such alarm, or the action makes no sense with it.
         Raises StoreError: the disk did not take it.
         """
         async with self._stepping:

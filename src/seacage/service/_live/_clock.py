@@ -1,9 +1,9 @@
 """What time it is at the cage, the wall's or a replay's own, and which clocks are wrong."""
 
 import time
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
-from typing import Protocol, runtime_checkable
 
 from seacage.conventions import duration_text
 
@@ -14,32 +14,33 @@ STEP_S = 5.0
 _LASTS_S = 600.0  # an alarm stands so long after the last sign of a fault
 
 
-@runtime_checkable
-class Clock(Protocol):
+class AbstractClock(ABC):
     """Tells a cage's time."""
 
-    @property
-    def speed(self) -> float:
-        """Seconds at the cage per second of the wall [-]."""
-        ...
+    speed: float = 1.0  # seconds at the cage per second of the wall [-]
 
+    @abstractmethod
     def now(self) -> datetime:
         """Return the time at the cage, UTC."""
-        ...
 
     def monotonic_s(self) -> float:
         """Return a time that never steps, from any origin [s at the cage].
 
-        ``now`` and this one go on alike, unless somebody sets the clock.
+        ``now`` and this one go on alike, unless somebody sets the clock: that a clock of its own
+        follows its samples or begins again is no step.
         """
-        ...
+        return self.now().timestamp()
+
+    def latest_allowed(self, ahead_s: float) -> datetime:
+        """Return the time after which a sample's own clock must be wrong.
+
+        ``ahead_s``: how far a source's clock may be ahead [s].
+        """
+        return self.now() + timedelta(seconds=ahead_s)
 
 
-@dataclass(frozen=True, slots=True)
-class WallClock:
+class WallClock(AbstractClock):
     """The time of this machine."""
-
-    speed: float = 1.0
 
     def now(self) -> datetime:
         """Return the time of this machine, UTC."""
@@ -50,7 +51,7 @@ class WallClock:
         return time.monotonic()
 
 
-class FollowingClock:
+class FollowingClock(AbstractClock):
     """A clock that stands where the newest sample stands, and runs on from there.
 
     For records that somebody publishes as if they were live: what is ahead of it is not a fault
@@ -73,12 +74,9 @@ class FollowingClock:
         run_s = (time.monotonic() - self._received) * self.speed
         return min(self._at + timedelta(seconds=run_s), self.latest_allowed())
 
-    def monotonic_s(self) -> float:
-        """Return the clock's own time: that it follows its samples is no step [s]."""
-        return self.now().timestamp()
-
-    def latest_allowed(self) -> datetime:
-        """Return the time that no sample may be later than."""
+    def latest_allowed(self, ahead_s: float = AHEAD_S) -> datetime:
+        """Return the time that no sample may be later than: it believes them up to the wall's."""
+        del ahead_s  # of a source before this clock, which it sets
         return datetime.now(UTC) + timedelta(seconds=AHEAD_S)
 
     def hear(self, t: datetime) -> None:
@@ -87,7 +85,7 @@ class FollowingClock:
             self._at, self._received = t, time.monotonic()
 
 
-class ReplayClock:
+class ReplayClock(AbstractClock):
     """A clock that starts in the past and runs fast; it follows the monotonic clock.
 
     ``start``: where it stands when made. ``speed``: seconds at the cage per second of the wall [-].
@@ -102,10 +100,6 @@ class ReplayClock:
         """Return the replay's time, UTC."""
         return self._start + timedelta(seconds=(time.monotonic() - self._began) * self.speed)
 
-    def monotonic_s(self) -> float:
-        """Return the replay's own time: that it begins again is no step [s]."""
-        return self.now().timestamp()
-
     def wait_s(self, t: datetime) -> float:
         """Seconds of the wall until the replay reaches a time; 0 where it has passed."""
         return max(0.0, (t - self.now()).total_seconds() / self.speed)
@@ -119,17 +113,6 @@ class ReplayClock:
 def floor_time(t: datetime, step: timedelta) -> datetime:
     """Return the last whole step since 1970 that a time has reached."""
     return t - (t - _EPOCH) % step
-
-
-def latest_allowed(clock: Clock, ahead_s: float) -> datetime:
-    """Return the time after which a sample's own clock must be wrong.
-
-    ``clock``: of the cage; one that follows its samples believes them up to the wall's time.
-    ``ahead_s``: how far a source's clock may be ahead [s].
-    """
-    if isinstance(clock, FollowingClock):
-        return clock.latest_allowed()
-    return clock.now() + timedelta(seconds=ahead_s)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,7 +136,7 @@ class ClockFaults:
     clock that is behind.
     """
 
-    def __init__(self, clock: Clock, *, streams: int) -> None:
+    def __init__(self, clock: AbstractClock, *, streams: int) -> None:
         self._clock, self._streams = clock, streams
         self._last = clock.now(), clock.monotonic_s()
         self._step: tuple[Step, float] | None = None

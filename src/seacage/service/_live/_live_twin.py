@@ -7,9 +7,9 @@ from datetime import datetime, timedelta
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk
-from seacage.service._live._clock import Clock, ClockFaults, Step, floor_time
+from seacage.service._live._clock import AbstractClock, ClockFaults, Step, floor_time
 from seacage.service._live._damage import DamageCounter
-from seacage.service._live._past import Past, answer_in, streams_of
+from seacage.service._live._past import Past, answer_in
 from seacage.service._store._adaptations import Adaptation, Refold
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._samples import Stored
@@ -39,13 +39,13 @@ class LiveTwin:
         self,
         past: Past,  # of its cage, with the twin and the store
         *,
-        clock: Clock,
+        clock: AbstractClock,
         desk: AlarmDesk,  # where its alarms are assessed
         tick_s: float,  # between two assessments [s of the wall]
     ) -> None:
         self._name, self._store, self._clock, self._desk = past.cage, past.store, clock, desk
         self._period = timedelta(seconds=tick_s * clock.speed)
-        self.clocks = ClockFaults(clock, streams=len(streams_of(past.twin)))
+        self.clocks = ClockFaults(clock, streams=len(past.streams))
         self._went_back: list[tuple[Step, float]] = []  # and how far from there it is now [s]
         self._withdrawing: list[tuple[Step, str]] = []
         self._reinstating: list[tuple[Step, str]] = []
@@ -192,7 +192,7 @@ class LiveTwin:
 
     def _follow_clock(self, step: Step) -> None:
         _log.error("the clock was set", cage=self._name, by_s=step.by_s, now=str(step.now))
-        streams = streams_of(self._twin)
+        streams = self._past.streams
         if step.by_s < 0.0:
             self.damage.rewind(step.now)
         self.begin()

@@ -32,11 +32,6 @@ _INSTANT, _MINUTE = timedelta(microseconds=1), timedelta(minutes=1)
 _log = structlog.get_logger(__name__)
 
 
-def streams_of(twin: Twin) -> tuple[str, ...]:
-    """Name the streams that a twin listens to, the buoy first."""
-    return (twin.buoy, *twin.sensor_names)
-
-
 def answer_in(events: Sequence[Event]) -> Answered:
     """Find the last answer among the events of a tick, which is always answered."""
     return [event for event in events if isinstance(event, Answered)][-1]
@@ -52,6 +47,11 @@ class Past:
     id: str = ""  # hash of the twin
     since: datetime | None = None  # from when on it is in force; None for always
     shelf: TwinShelf | None = None  # with the twins that were in force before
+
+    @property
+    def streams(self) -> tuple[str, ...]:
+        """The streams that the twin listens to, the buoy first."""
+        return (self.twin.buoy, *self.twin.sensor_names)
 
     def of(self, t: datetime) -> "Past":
         """Return the same of the twin that was in force at a time, where it is still kept."""
@@ -101,7 +101,7 @@ class Past:
         start = at - ADAPTATION_BLOCK
         return tuple(
             one
-            for stream in streams_of(self.twin)
+            for stream in self.streams
             for one in self.store.amendments(self.cage, stream, start=start, known_at=at)
         )
 
@@ -134,7 +134,7 @@ class Past:
         end = at + timedelta(seconds=twin.timeouts.future_s) + _INSTANT
         read = partial(self.store.samples, self.cage, newest=True, withdrawn=False, known_at=at)
         samples = self.store.newest_of_each(self.cage, twin.buoy, at=left - _INSTANT)
-        for stream in streams_of(twin):
+        for stream in self.streams:
             if stream != twin.buoy:
                 samples += read(stream=stream, end=begin, limit=1)
             start = left if stream == twin.buoy else begin
@@ -150,56 +150,49 @@ class Past:
     def _first_since(self, start: datetime) -> datetime | None:
         found = (
             self.store.samples(self.cage, stream=stream, start=start, limit=1, withdrawn=False)
-            for stream in streams_of(self.twin)
+            for stream in self.streams
         )
         return min((samples[0].t for samples in found if samples), default=None)
 
+    def buoy_samples_before(self, samples: Sequence[Sample]) -> list[Sample]:
+        """The buoy's samples whose current was on its way when some of its samples came, and these.
 
-def buoy_samples_before(
-    twin: Twin, store: Store, cage: str, samples: Sequence[Sample]
-) -> list[Sample]:
-    """The buoy's samples whose current was on its way when some of its samples came, and these.
+        ``samples``: all of a span, in time order.
+        """
+        history_s = self.twin.travel_time.history_s
+        if not samples or not history_s:
+            return list(samples)
+        start, end = samples[0].t - timedelta(seconds=history_s), samples[0].t
+        read = partial(self.store.samples, self.cage, stream=self.twin.buoy)
+        last = read(end=start, newest=True, limit=1)
+        return [*last, *read(start=start, end=end, limit=_MOST), *samples]
 
-    ``samples``: all of a span, in time order.
-    """
-    if not samples or not twin.travel_time.history_s:
-        return list(samples)
-    start, end = samples[0].t - timedelta(seconds=twin.travel_time.history_s), samples[0].t
-    read = partial(store.samples, cage, stream=twin.buoy)
-    last = read(end=start, newest=True, limit=1)
-    return [*last, *read(start=start, end=end, limit=_MOST), *samples]
+    def buoy_samples_around(self, samples: Sequence[Sample]) -> list[Sample]:
+        """The same of samples that are far apart: those around the time when the current left."""
+        travel_time = self.twin.travel_time
+        if not samples or not travel_time.history_s:
+            return list(samples)
+        velocity = Metocean.of_record(self.buoy_record(samples)).current_velocity
+        travel, found = np.nan_to_num(travel_time.of(velocity)), {one.t: one for one in samples}
+        read = partial(self.store.samples, self.cage, stream=self.twin.buoy, limit=_NEIGHBOURS)
+        for t, seconds in zip(list(found), travel.tolist(), strict=True):
+            left = t - timedelta(seconds=seconds)
+            for one in (*read(end=left, newest=True), *read(start=left)):
+                found.setdefault(one.t, one)
+        return [found[t] for t in sorted(found)]
 
+    def buoy_record(self, samples: Sequence[Sample]) -> Record:
+        """Put samples of the buoy, in time order, into a record.
 
-def buoy_samples_around(
-    twin: Twin, store: Store, cage: str, samples: Sequence[Sample]
-) -> list[Sample]:
-    """The same of samples that are far apart: those around the time when the current left."""
-    if not samples or not twin.travel_time.history_s:
-        return list(samples)
-    velocity = Metocean.of_record(buoy_record(twin, samples)).current_velocity
-    travel, found = np.nan_to_num(twin.travel_time.of(velocity)), {one.t: one for one in samples}
-    read = partial(store.samples, cage, stream=twin.buoy, limit=_NEIGHBOURS)
-    for t, seconds in zip(list(found), travel.tolist(), strict=True):
-        left = t - timedelta(seconds=seconds)
-        for one in (*read(end=left, newest=True), *read(start=left)):
-            found.setdefault(one.t, one)
-    return [found[t] for t in sorted(found)]
-
-
-def buoy_record(twin: Twin, samples: Sequence[Sample]) -> Record:
-    """Put samples of a twin's buoy, in time order, into a record.
-
-    A quantity that a sample lacks is missing there; of several samples of one time the last
-    counts.
-    """
-    kept = list({sample.t: sample for sample in samples}.values())
-    return Record(
-        stream=twin.buoy,
-        time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),
-        values={key: np.array([one.values.get(key, np.nan) for one in kept]) for key in BUOY_KEYS},
-        flags={
-            key: np.array([one.flags.get(key, Flag.MISSING) for one in kept], dtype=np.uint8)
-            for key in BUOY_KEYS
-        },
-        origin=twin.origin,
-    )
+        A quantity that a sample lacks is missing there; of several samples of one time the last
+        counts.
+        """
+        kept = list({sample.t: sample for sample in samples}.values())
+        flags = {key: [one.flags.get(key, Flag.MISSING) for one in kept] for key in BUOY_KEYS}
+        return Record(
+            stream=self.twin.buoy,
+            time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),
+            values={k: np.array([one.values.get(k, np.nan) for one in kept]) for k in BUOY_KEYS},
+            flags={key: np.array(flag, dtype=np.uint8) for key, flag in flags.items()},
+            origin=self.twin.origin,
+        )

@@ -2,14 +2,15 @@
 
 import asyncio
 from collections.abc import Mapping
-from datetime import datetime, timedelta
+from datetime import timedelta
 
 import structlog
 
-from seacage.service._live._clock import Clock
+from seacage.service._live._clock import AbstractClock, floor_time
 from seacage.service._store._database._session import StoreError
 from seacage.service._store._store import Store
 
+_DAY = timedelta(days=1)
 _log = structlog.get_logger(__name__)
 
 
@@ -24,7 +25,7 @@ class Retention:
         self,
         store: Store,  # where old samples are
         *,
-        clocks: Mapping[str, Clock],  # of each cage, as old is what its clock says
+        clocks: Mapping[str, AbstractClock],  # of each cage, as old is what its clock says
         # UTC days that ended longer ago leave [d]; above zero, as the settings say
         keep_days: float,
         every_s: float = 3600.0,  # between two looks [s of the wall]
@@ -36,7 +37,7 @@ class Retention:
         """Look for ever; what fails is told and tried again at the next look."""
         while True:
             for cage, clock in self._clocks.items():
-                before = midnight(clock.now() - self._keep)
+                before = floor_time(clock.now() - self._keep, _DAY)
                 try:
                     count = await asyncio.to_thread(self._store.retire, cage, before=before)
                 except StoreError as error:
@@ -45,8 +46,3 @@ class Retention:
                     if count:
                         _log.info("old samples retired", cage=cage, samples=count)
             await asyncio.sleep(self._every_s)
-
-
-def midnight(t: datetime) -> datetime:
-    """When the UTC day of a time began."""
-    return t.replace(hour=0, minute=0, second=0, microsecond=0)

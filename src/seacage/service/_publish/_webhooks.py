@@ -11,7 +11,7 @@ from typing import Protocol, runtime_checkable
 import structlog
 
 from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announcement_json
-from seacage.service._live._clock import Clock
+from seacage.service._live._clock import AbstractClock
 from seacage.service._publish._post import POST_FAILED, Webhook, post
 from seacage.twin import Action
 
@@ -33,7 +33,7 @@ class Alarmed(Protocol):
         ...
 
     @property
-    def clock(self) -> Clock:
+    def clock(self) -> AbstractClock:
         """What time it is there."""
         ...
 

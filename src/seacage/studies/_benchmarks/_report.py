@@ -8,7 +8,6 @@ from seacage.figures import Contest, cost_figure, coverage_figure, error_figure
 from seacage.studies._benchmarks._methods import OURS, Method
 from seacage.studies._benchmarks._problems import CAGE_SIZE, Problem
 from seacage.studies._benchmarks._verdicts import COVERAGE, Summaries
-from seacage.studies._page import embed
 
 
 def page_values(
@@ -54,7 +53,7 @@ def page_values(
             for problem in problems
         },
         "failed": [one for one in report.values() if one.failures],
-        "pictures": {name: embed(figure) for name, figure in figures.items()},
+        "pictures": figures,
     }
 
 

@@ -33,38 +33,25 @@ class BenchmarkStudy:
 
 
 def benchmark_study(
+    # Folder of ``report.html``, ``scores.json`` and all answers; after a stop the work goes on
+    # where it was, and what is there for the same code is not made again
     out: str | Path,
     *,
+    # The environment that ``make bench-peers`` made; None runs ours and the baselines alone
     peers: str | Path | None = None,
+    # Of the problems' samples; those below 5 are tuning seeds and decide nothing
     seeds: Sequence[int] = SEEDS,
-    quick: bool = False,
-    fresh: bool = False,
+    quick: bool = False,  # leave out the cage-size problem, and take two seeds of each kind at most
+    fresh: bool = False,  # answer the cage-size problem again, so that all its times are of one run
+    # Run nothing: write the page from the answers that are there. A method whose answers to a
+    # problem are not all there is left out of it.
     kept: bool = False,
-    progress: Progress | None = None,
+    progress: Progress | None = None,  # called as (problem, done, total), in runs
 ) -> BenchmarkStudy:
     """Compare learners on published multifidelity problems, into one HTML page.
 
     Raises InputError: no report seed among the seeds, or no environment of peers where one is
     named.
-
-    Parameters
-    ----------
-    out
-        Folder of ``report.html``, ``scores.json`` and all answers; after a stop the work goes on
-        where it was, and what is there for the same code is not made again.
-    peers
-        The environment that ``make bench-peers`` made; None runs ours and the baselines alone.
-    seeds
-        Of the problems' samples; those below 5 are tuning seeds and decide nothing.
-    quick
-        Leave out the cage-size problem, and take at most two seeds of each kind.
-    fresh
-        Answer the cage-size problem again, so that all its times are of one run.
-    kept
-        Run nothing: write the page from the answers that are there. A method whose answers to a
-        problem are not all there is left out of it.
-    progress
-        Called as (problem, done, total), in runs.
     """
     out, notify = Path(out), progress or no_progress
     tuning, report = _split_seeds(seeds, quick=quick)

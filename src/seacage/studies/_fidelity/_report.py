@@ -12,7 +12,6 @@ from seacage.studies._fidelity._fouling import FoulingGap
 from seacage.studies._fidelity._gap import SECTORS, SensorGap
 from seacage.studies._fidelity._null_case import Gains, NullCase
 from seacage.studies._fidelity._rescaling import LEAST_LEFT, Rescaling
-from seacage.studies._page import embed
 
 ORIGIN = Origin.VIRTUAL_FIELD  # of every truth and every reading here
 _QUANTITIES = {"m": "rise", "kN": "tension"}
@@ -56,7 +55,7 @@ def page_values(
         "sectors": list(SECTORS),
         "by_sector": by_sector,
         "growths": [f"{growth:g}" for growth in fouling.growth],
-        "pictures": {name: embed(figure) for name, figure in figures.items()},
+        "pictures": figures,
         "thousandth": THOUSANDTH,
         "origin": ORIGIN,
     }

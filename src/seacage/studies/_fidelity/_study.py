@@ -39,13 +39,18 @@ class FidelityStudy:
 
 
 def fidelity_study(
-    out: str | Path,
+    out: str | Path,  # as for ``paper_study``, as are ``workers`` and ``progress``
     *,
+    # Folder of a virtual field with its truth beside it in ``truth``; None makes one of 48 days,
+    # settled and without waves
     field: str | Path | None = None,
-    cage: Cage | None = None,
+    cage: Cage | None = None,  # that the field is of; None for the shipped cage of the field's name
+    # That the field was made with, or is to be made with; None for those shipped
     hidden: TruthParameters | None = None,
+    # 10-minute windows that survey the days, about; those in which a shackle lives come on top.
+    # With waves a window costs half a second of a core.
     windows: int = 600,
-    seed: int = 0,
+    seed: int = 0,  # of the choice of windows, the low fidelity's waves, searches and draws
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> FidelityStudy:
@@ -57,23 +62,6 @@ def fidelity_study(
 
     Raises InputError: the field is not virtual, was made with other hidden parameters, or is too
     short.
-
-    Parameters
-    ----------
-    out, workers, progress
-        As for ``paper_study``.
-    field
-        Folder of a virtual field with its truth beside it in ``truth``; None makes one of 48
-        days, settled and without waves.
-    cage
-        That the field is of; None takes the shipped cage of the field's name.
-    hidden
-        That the field was made with, or is to be made with; None for those shipped.
-    windows
-        10-minute windows that survey the days, about; those in which a shackle lives come
-        on top. With waves a window costs half a second of a core.
-    seed
-        Of the choice of windows, the low fidelity's waves, the searches and the draws.
     """
     out, report = Path(out), progress or no_progress
     hidden = TruthParameters.read() if hidden is None else hidden

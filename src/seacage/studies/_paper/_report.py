@@ -1,6 +1,7 @@
 """The paper study's page: its figures, for the template ``paper.html``."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -9,7 +10,6 @@ from seacage.conventions import Origin
 from seacage.ocean import SeaState
 from seacage.studies._chain import Chain
 from seacage.studies._held_out import comparison, display_span
-from seacage.studies._page import embed
 from seacage.studies._paper._shape_models import (
     GCN_OURS,
     GCN_PAPER,
@@ -21,6 +21,9 @@ from seacage.studies._paper._shape_study import ShapeCase, ShapeStudy
 from seacage.studies._paper._trainings import HEARING, ScoredWays, WayScore
 from seacage.studies._paper._wave_loads import BASELINES, METHODS, STATISTICS, WaveLoads
 from seacage.studies._stages import count
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 _SHOWN_SPEED = 0.6  # of the current that the net is drawn in [m/s]
 _NOMINAL = 0.95  # coverage of the intervals
@@ -81,12 +84,10 @@ def finding_values(scored: ScoredWays) -> dict[str, object]:
     }
 
 
-def _draw_net(chain: Chain, scored: ScoredWays, sea: SeaState) -> str:
+def _draw_net(chain: Chain, scored: ScoredWays, sea: SeaState) -> "Figure":
     answer = scored.twin.predict(sea)
-    return embed(
-        drawings.net_figure(
-            chain.cage, answer.node_position[0], bridle_tension=answer.bridle_low[0], sea=sea
-        )
+    return drawings.net_figure(
+        chain.cage, answer.node_position[0], bridle_tension=answer.bridle_low[0], sea=sea
     )
 
 
@@ -105,11 +106,11 @@ def _draw_sensors(chain: Chain, scored: ScoredWays) -> list[dict[str, object]]:
         figure = drawings.rows_figure(
             list(map(comparison, scores, readings)), list(map(display_span, readings))
         )
-        drawn.append({"title": title, "scores": scores, "picture": embed(figure)})
+        drawn.append({"title": title, "scores": scores, "picture": figure})
     return drawn
 
 
-def _draw_ways(ways: Sequence[WayScore]) -> str | None:
+def _draw_ways(ways: Sequence[WayScore]) -> "Figure | None":
     """Other ways of training, beside the way shown."""
     if len(ways) < 2:
         return None
@@ -124,10 +125,10 @@ def _draw_ways(ways: Sequence[WayScore]) -> str | None:
         for way in ways
     }
     names = [one.sensor for one in sensors]
-    return embed(drawings.training_scores_figure(names, scores, origin=sensors[0].origin))
+    return drawings.training_scores_figure(names, scores, origin=sensors[0].origin)
 
 
-def draw_wave_loads(loads: WaveLoads) -> str:
+def draw_wave_loads(loads: WaveLoads) -> "Figure":
     """Errors of each statistic by method, a dot for each shackle."""
     contests = list[drawings.Contest]()
     for name in STATISTICS.values():
@@ -137,14 +138,11 @@ def draw_wave_loads(loads: WaveLoads) -> str:
             none = np.full(len(METHODS), np.nan)
             contests.append(drawings.Contest(title=name.capitalize(), error=error, coverage=none))
     label = f"Median error over the reading ({loads.scores[0].origin})"
-    return embed(
-        drawings.error_figure(
-            [one.capitalize() for one in METHODS], contests, ours=(0, 1), label=label
-        )
-    )
+    methods = [one.capitalize() for one in METHODS]
+    return drawings.error_figure(methods, contests, ours=(0, 1), label=label)
 
 
-def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> dict[str, str]:
+def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> "dict[str, Figure]":
     best = shapes.best.model
     drawn = [*(name for name in _DRAWN_MODELS if name in shapes.scores), best]
     nets = [*(name for name in _NETS if name in shapes.scores), best]  # the paper's two, and ours
@@ -157,14 +155,13 @@ def _draw_shapes(chain: Chain, shapes: ShapeStudy) -> dict[str, str]:
         )
         for case in shapes.cases
     ]
-    figures = {
+    return {
         "cases": drawings.shape_cases_figure(errors),
         "nets": drawings.shape_views_figure(views, chain.cage.edges),
         "speeds": drawings.shape_error_figure(
             shapes.current_speed, {name: errors[name].mean(axis=1) for name in nets}
         ),
     }
-    return {name: embed(figure) for name, figure in figures.items()}
 
 
 def _title(case: ShapeCase) -> str:

@@ -18,6 +18,7 @@ from seacage.studies._paper import _shape_models as shape_models
 from seacage.studies._paper._shape_scores import ShapeScore, shape_score
 from seacage.studies._stages import Stages
 from seacage.surrogates import OverTime, Prediction, metocean_features
+from seacage.twin import Metocean
 
 _ROOMS = ("conventions", "surrogates")  # whose code makes a model's answers, its features included
 # Quantiles of the test cases' current speeds that the two nets drawn are taken at
@@ -184,15 +185,11 @@ def _features(
 ) -> Float[np.ndarray, "case feature"]:
     if inputs == shape_models.DEGREES:
         return np.array([[sea.current_speed, sea.current_to] for sea in seas])
-    velocity = np.array([sea.current_velocity for sea in seas])
+    water = Metocean.of(seas)
     if inputs == shape_models.CURRENT:
-        return metocean_features(velocity)
-    return metocean_features(
-        velocity,
-        hs=np.array([sea.hs for sea in seas]),
-        wave_direction=np.array([sea.wave_direction for sea in seas]),
-        tp=np.array([sea.peak_period for sea in seas]),
-    )
+        return metocean_features(water.current_velocity)
+    waves = {"hs": water.hs, "wave_direction": water.wave_direction, "tp": water.tp}
+    return metocean_features(water.current_velocity, **waves)
 
 
 def _draw_cases(trial: ShapeTrial, answers: Mapping[str, Prediction]) -> tuple[ShapeCase, ...]:

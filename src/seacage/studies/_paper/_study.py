@@ -54,19 +54,31 @@ class PaperStudy:
 
 
 def paper_study(
+    # Folder of ``report.html``, ``scores.json`` and the stages they were made from; after a stop
+    # the work goes on where it was
     out: str | Path,
     *,
-    cage: Cage | None = None,
+    cage: Cage | None = None,  # None for that of the campaign given, or ``ace``
+    # 400 equilibria without waves and a settled field, in minutes. Otherwise, and where a campaign
+    # or a field is given, the paper's 1,000 half-hours, the last 100 held out, and a field in time.
     quick: bool = True,
+    # A finished campaign to take in place of one made here; its last 100 cases are held out
     campaign: str | Path | None = None,
+    # Folder of a virtual field with its truth in ``truth``, in place of one made here; the first
+    # half of its days are training days
     field: str | Path | None = None,
+    # A finished campaign of plan ``loads``, for the loads in waves, in place of one made here of
+    # 120 cases when quick and of 480 otherwise
     loads: str | Path | None = None,
+    # Of a field made in full size: its length, and to simulate one hour in so many and those of the
+    # shackles
     days: float = 48.0,
     one_in: int = 1,
+    # Whether to train graph networks, which takes minutes and JAX; None for not when quick
     networks: bool | None = None,
-    seed: int = 0,
-    workers: int | None = None,
-    progress: Progress | None = None,
+    seed: int = 0,  # of everything that is drawn
+    workers: int | None = None,  # processes for simulations; None for one per core
+    progress: Progress | None = None,  # called as (stage, done, total)
 ) -> PaperStudy:
     """Repeat the paper's study with a virtual field, into one HTML page.
 
@@ -75,37 +87,6 @@ def paper_study(
     which of the paper's statements these numbers repeat.
 
     Raises InputError: the field is not virtual, or has too little on one side of the cut.
-
-    Parameters
-    ----------
-    out
-        Folder of ``report.html``, ``scores.json`` and the stages they were made from; after a
-        stop the work goes on where it was.
-    cage
-        The cage; None for that of the campaign given, or ``ace``.
-    quick
-        400 equilibria without waves and a settled field, in minutes. Otherwise, and where a
-        campaign or a field is given, the paper's 1,000 half-hours, the last 100 held out,
-        and a field simulated in time.
-    campaign
-        A finished campaign to take in place of one made here; its last 100 cases are held out.
-    field
-        Folder of a virtual field with its truth in ``truth``, in place of one made here. The
-        first half of its days are training days.
-    loads
-        A finished campaign of plan ``loads``, for the loads in waves, in place of one made here
-        of 120 cases when quick and of 480 otherwise.
-    days, one_in
-        Of a field made in full size: its length, and to simulate one hour in so many and those
-        of the shackles.
-    networks
-        Whether to train graph networks, which takes minutes and JAX; None for not when quick.
-    seed
-        Of everything that is drawn.
-    workers
-        Processes for simulations; None for one per core.
-    progress
-        Called as (stage, done, total).
     """
     quick = quick and campaign is None and field is None
     chain = Chain(

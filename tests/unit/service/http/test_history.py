@@ -58,7 +58,7 @@ def store(tmp_path):
 
 def history(twin, store, limit, **span):
     span = {"start": None, "end": None} | span
-    return history_between(twin, store, "ace", limit=limit, **span)
+    return history_between(Past(twin, store, "ace"), limit=limit, **span)
 
 
 def test_a_span_that_holds_no_more_than_was_requested_is_given_whole(twin, store):

@@ -8,7 +8,6 @@ from seacage.service._live._clock import (
     FollowingClock,
     ReplayClock,
     WallClock,
-    latest_allowed,
 )
 
 
@@ -54,8 +53,8 @@ def test_a_clock_that_follows_stands_at_the_newest_sample_and_never_goes_back(mo
 @pytest.mark.usefixtures("monotonic")
 def test_no_clock_lets_samples_be_more_than_a_minute_ahead_of_it_or_of_the_wall():
     replayed = ReplayClock(NOON, speed=60.0)
-    assert latest_allowed(replayed, 30.0) == NOON + timedelta(seconds=30)
-    allowed = latest_allowed(FollowingClock(newest=NOON), 30.0)
+    assert replayed.latest_allowed(30.0) == NOON + timedelta(seconds=30)
+    allowed = FollowingClock(newest=NOON).latest_allowed(30.0)
     assert abs((allowed - datetime.now(UTC)).total_seconds() - 60.0) < 60.0
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from seacage.conventions import InputError
 from seacage.service._assembly import assemble
-from seacage.service._live._retention import Retention, midnight
+from seacage.service._live._clock import AbstractClock, floor_time
+from seacage.service._live._retention import Retention
 from seacage.service._settings import Settings, read_settings
 from seacage.service._store._store import look_into, open_store
 from seacage.testing import stand_in_twin
@@ -14,14 +15,9 @@ from stores import NOON, put, sample
 A_DAY = 60 * 24
 
 
-class NoonClock:
-    speed = 1.0
-
+class NoonClock(AbstractClock):
     def now(self):
         return NOON
-
-    def monotonic_s(self):
-        return 0.0
 
 
 @pytest.fixture
@@ -73,7 +69,7 @@ def test_to_keep_nothing_is_refused():
 
 
 def test_midnight_is_that_of_utc():
-    assert midnight(NOON) == NOON - timedelta(hours=12)
+    assert floor_time(NOON, timedelta(days=1)) == NOON - timedelta(hours=12)
 
 
 def test_a_service_that_is_set_to_archives_and_lets_go(tmp_path):
