@@ -9,6 +9,7 @@ import sys
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
+from fcntl import LOCK_EX, flock
 from pathlib import Path
 
 # Before NumPy is loaded: the tests run side by side, so each has one thread.
@@ -108,6 +109,20 @@ def built_page(pytestconfig: pytest.Config) -> Path:
     if not (folder / "index.html").is_file():
         skip_or_fail("chromium", "the page is not built; run `make page`")
     return folder
+
+
+@pytest.fixture(scope="session")
+def wheel(pytestconfig: pytest.Config, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """This machine's wheel, as pip makes it: built once, by the first worker that asks."""
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "wheel"
+    folder.mkdir(exist_ok=True)
+    with (folder / "lock").open("w") as lock:
+        flock(lock, LOCK_EX)
+        if not list(folder.glob("*.whl")):
+            build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps"]
+            subprocess.run([*build, "--wheel-dir", folder, pytestconfig.rootpath], check=True)
+    return next(folder.glob("*.whl"))
 
 
 @pytest.fixture(scope="session")

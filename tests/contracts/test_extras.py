@@ -61,15 +61,6 @@ def constraints(path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    """This machine's wheel, as pip makes it."""
-    folder = tmp_path_factory.mktemp("wheel")
-    words = ["pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, ROOT]
-    subprocess.run([sys.executable, "-m", *words], check=True)
-    return next(folder.glob("*.whl"))
-
-
-@pytest.fixture(scope="module")
 def install(tmp_path_factory, wheel):
     """Makes an environment of the wheel and some extras alone; returns its command line."""
     folder = tmp_path_factory.mktemp("environments")

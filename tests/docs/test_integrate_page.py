@@ -7,6 +7,7 @@ import sqlite3
 import subprocess
 import sys
 from contextlib import closing
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -20,10 +21,11 @@ from running_service import eventually, running
 from seacage.records import Limits
 from seacage.service._store import _aggregates
 from seacage.testing import stand_in_twin
-from stores import opened, put, sample, schema
+from seacage.twin import Action, Alarm, AlarmBook, AlarmEvent
+from stores import NOON, opened, put, sample, schema
 
 PAGE = (Path(__file__).parents[2] / "docs/integrate.md").read_text()
-LATEST, LATEST_PG, MEANS, JOURNAL = re.findall(r"```sql\n(.+?)```", PAGE, re.DOTALL)
+PANEL, MEANS, WAITING, JOURNAL = re.findall(r"```sql\n(.+?)```", PAGE, re.DOTALL)
 
 
 def test_every_series_on_the_page_is_one_of_the_service(tmp_path):
@@ -38,9 +40,13 @@ def test_every_series_on_the_page_is_one_of_the_service(tmp_path):
 
 
 def fill(store):
-    """Ten minutes of a sensor and one reading that is no number."""
+    """Ten minutes of a sensor and a buoy, and one reading that is no number."""
     samples = [sample(minute, 14.0 + minute / 10.0) for minute in range(11)]
-    put(store, *samples, sample(3, float("nan"), stream="depth-2"), limits=Limits())
+    currents = [
+        replace(sample(minute, stream="buoy-1"), values={"current_speed_m_s": 0.4 + minute / 90.0})
+        for minute in range(10)
+    ]
+    put(store, *samples, *currents, sample(3, float("nan"), stream="depth-2"), limits=Limits())
 
 
 @pytest.fixture(autouse=True)
@@ -49,34 +55,62 @@ def _summed_up_at_once(monkeypatch):
     monkeypatch.setattr(_aggregates, "RESTED", timedelta(0))
 
 
-def means_by(execute):
-    """What the page's query finds, once the service has summed up what came."""
-    return eventually(lambda: execute(MEANS).fetchall(), bool, seconds=20)
+def answers(execute, store):
+    """What the page's queries find; that of the means once the service has summed up what came."""
+    fill(store)
+    alarm = Alarm(name="load.bridle-1", active=True, acknowledged=False, since=NOON, value=0.7)
+    line = AlarmEvent(alarm=alarm.name, action=Action.RAISED, t=NOON, value=0.7)
+    book = AlarmBook().with_alarm(alarm).with_alarm(Alarm(name="load.bridle-2"))
+    store.keep_alarms("ace", book=book.to_json(), journal=[line]).result(20)
+    milliseconds = {"$__from": "1580558580000", "$__to": "1580559120000"}  # 12:03 to 12:12
+    panel = re.sub(r"\$__\w+", lambda one: milliseconds[one[0]], PANEL)
+    means = eventually(lambda: execute(MEANS).fetchall(), bool, seconds=20)
+    asked = (execute(query).fetchall() for query in (panel, WAITING, JOURNAL))
+    return means, *asked
 
 
-def test_the_queries_of_sqlite_answer_beside_the_service(tmp_path):
+def check_answers(means, depths, waiting, journal, time):
+    assert [one[1] for one in means] == ["buoy-1"]
+    assert means[0][2] == pytest.approx(0.45)
+    assert [one[0] for one in depths] == [time(minute) for minute in range(3, 11)]
+    assert depths[-1] == (time(10), "depth-1", 15.0)
+    assert [(*one[:2], one[3]) for one in waiting] == [("ace", "load.bridle-1", 0.7)]
+    assert journal == [("ace", time(0), "load.bridle-1", "raised", "", "")]
+
+
+def test_the_queries_of_the_page_answer_beside_the_service_in_sqlite(tmp_path):
     with opened(tmp_path / "samples.sqlite") as store:
-        fill(store)
         place = f"file:{tmp_path}/samples.sqlite?mode=ro"
         with closing(sqlite3.connect(place, uri=True)) as reader:
-            latest, means = reader.execute(LATEST).fetchall(), means_by(reader.execute)
-            reader.execute(JOURNAL)
-    assert latest == [("ace", "depth-1", "2020-02-01 12:10:00", "depth_m", 15.0, 1)]
-    assert means[0][:3] == ("ace", "depth-1", "depth_m")
-    assert means[0][4:] == pytest.approx((10, 14.45, 14.0, 14.9))
+            found = answers(reader.execute, store)
+    assert found[2][0][2] == "2020-02-01 12:00:00"
+    check_answers(*found, lambda minute: f"2020-02-01 12:{minute:02}:00.000")
 
 
-def test_the_queries_of_postgresql_answer_beside_the_service(postgres):
+def test_the_queries_of_the_page_answer_beside_the_service_in_postgresql(postgres):
     with (
         schema(postgres) as url,
         opened(url) as store,
         psycopg.connect(url, autocommit=True) as reader,
     ):
-        fill(store)
-        latest, means = reader.execute(LATEST_PG).fetchall(), means_by(reader.execute)
-    t = datetime(2020, 2, 1, 12, 10, tzinfo=UTC)
-    assert latest == [("ace", "depth-1", t, "depth_m", 15.0, 1)]
-    assert means[0][4:] == pytest.approx((10, 14.45, 14.0, 14.9))
+        found = answers(reader.execute, store)
+    assert found[2][0][2] == datetime(2020, 2, 1, 12)  # noqa: DTZ001 (a timestamp without zone)
+    check_answers(*found, lambda minute: datetime(2020, 2, 1, 12, minute))  # noqa: DTZ001
+
+
+def test_the_page_names_the_columns_of_the_views(tmp_path):
+    rows = re.findall(r"^\| `(\w+)` \| [^|]+ \| (.+) \|$", PAGE, re.MULTILINE)
+    with (
+        opened(tmp_path / "samples.sqlite"),
+        closing(sqlite3.connect(tmp_path / "samples.sqlite")) as reader,
+    ):
+        for view, words in rows:
+            cursor = reader.execute(f"SELECT * FROM {view}")
+            columns = {name for name, *_ in cursor.description} - {"cage", "t_utc", "t_us"}
+            if view == "readings_10min":  # "means of the same"
+                columns -= {"hs_m", "tp_s", "depth_m", "tension_kn"}
+            assert columns == set(re.findall(r"`(\w+)`", words)), view
+    assert len(rows) == 5
 
 
 @pytest.mark.slow

@@ -26,7 +26,8 @@ def test_the_example_leads_to_a_twin(tmp_path, monkeypatch):
         words = shlex.split(command.removeprefix("$ seacage "))
         result = CliRunner().invoke(app, words, catch_exceptions=False)
         assert result.exit_code == 0, f"{command}: {result.stderr}"
+        assert "warning" not in result.stderr
     assert "Left out" in result.stdout
     twin = Twin.read("twin")
-    assert (twin.cage.rings, twin.cage.spokes) == (5, 8)
+    assert (twin.cage.rings, twin.cage.spokes) == (5, 16)
     assert twin.provenance.law == "Mine 1.0"

@@ -1,10 +1,11 @@
 """A new user, with nothing but the commands of `docs/first-steps.md` and an empty environment.
 
-The page is read from top to bottom: files are saved and added to as it says, commands run in one
-shell after the other, a service runs until "Ctrl-C". `SEACAGE_MINUTES=file` writes what each
-section took.
+The page is read from top to bottom: files are saved and added to as it says, an example of another
+page too, commands run in one shell after the other, a service runs until "Ctrl-C".
+`SEACAGE_MINUTES=file` writes what each section took.
 """
 
+import json
 import os
 import re
 import shutil
@@ -21,9 +22,11 @@ import pytest
 from outside import wait_for
 
 ROOT = Path(__file__).parents[2]
-PAGE = (ROOT / "docs/first-steps.md").read_text()
+DOCS = ROOT / "docs"
+PAGE = (DOCS / "first-steps.md").read_text()
 STEP = re.compile(
     r"^## (?P<section>[^\n]+)$"
+    r"|Save the example of \[(?P<page>[\w.]+)\][^\n]+ as `(?P<example>[\w.]+)`"
     r"|(?P<how>Save this as|Add this to) `(?P<file>[\w.-]+)`[^\n]*\n\n```\w+\n(?P<text>.*?)```"
     r"|```console\n(?P<commands>.*?)```"
     r"|(?P<stop>Stop it with Ctrl-C)",
@@ -97,15 +100,6 @@ class NewUser:
             self._service = None
 
 
-@pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("wheel")
-    build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation"]
-    subprocess.run([*build, "-w", folder, ROOT], check=True)
-    (found,) = folder.glob("*.whl")
-    return found
-
-
 @pytest.fixture
 def user(tmp_path, wheel):
     if not shutil.which("curl"):
@@ -133,6 +127,11 @@ def look_at_the_cage(user: NewUser, seen: dict) -> None:
 
 def look_at_the_twin(user: NewUser, seen: dict) -> None:
     assert (user.folder / "twin/model.json").exists()
+
+
+def look_at_their_twin(user: NewUser, seen: dict) -> None:
+    model = json.loads((user.folder / "their-twin/model.json").read_text())
+    assert "Mine 1.0" in json.dumps(model)
 
 
 def look_at_the_record(user: NewUser, seen: dict) -> None:
@@ -163,6 +162,7 @@ def look_elsewhere(user: NewUser, seen: dict) -> None:
 LOOKS = {
     "The cage": look_at_the_cage,
     "A twin": look_at_the_twin,
+    "A twin of another simulator": look_at_their_twin,
     "Your record": look_at_the_record,
     "The live page": look_at_the_page,
     "Another twin": look_at_the_second_twin,
@@ -184,6 +184,11 @@ def test_the_page_leads_a_new_user_from_nothing_to_a_live_cage_and_its_backup(us
         if step["section"]:
             end_section()
             title, began = step["section"], time.monotonic()
+        elif step["page"]:
+            (code,) = re.findall(
+                r"```python\n(.*?)```", (DOCS / step["page"]).read_text(), re.DOTALL
+            )
+            (user.folder / step["example"]).write_text(code)
         elif step["file"]:
             with (user.folder / step["file"]).open("w" if "Save" in step["how"] else "a") as file:
                 file.write(step["text"])

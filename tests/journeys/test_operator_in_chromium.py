@@ -32,6 +32,15 @@ def live(tmp_path: Path):
         yield one
 
 
+@pytest.fixture
+def watched(chromium: Path, live: Running):
+    """The page of somebody who may acknowledge, in a calm sea."""
+    with opened_browser(chromium, webgl=False) as one:
+        one.page.goto(address(live, "read", "ack"))
+        well(one)
+        yield one
+
+
 def address(live: Running, *scopes: str) -> str:
     token = live.service.tokens.mint(list(scopes), keep=True, name="Night shift")
     return f"{live.address}/#token={token}"
@@ -84,99 +93,87 @@ def well(watched: Watched) -> None:
 
 
 def test_a_load_beyond_its_limit_is_reported_acknowledged_journaled_and_looked_back_at(
-    chromium: Path, live: Running
+    live: Running, watched: Watched
 ) -> None:
-    with opened_browser(chromium, webgl=False) as watched:
-        page = watched.page
-        page.goto(address(live, "read", "ack"))
-        well(watched)
-
-        excursion(live)
-        watched.until("document.querySelector('.verdict').dataset.kind == 'warning'")
-        assert "2 alarms" in page.locator(".verdict").inner_text()
-        assert page.title().startswith("(2)")
-        toast = page.locator(".toast", has_text="bridle 10")
-        toast.get_by_role("button", name="Look").click()
-
-        listed = page.locator("li.alarm", has_text="bridle 10")
-        assert "active, not acknowledged" in listed.inner_text()
-        listed.get_by_role("button", name="Acknowledge: ").click()
-        page.get_by_label("Why").fill("Feed barge slackens the stern")
-        page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
-        watched.until("document.body.innerText.includes('active, acknowledged')")
-        assert alarms_of(live)["load.bridle-10"]["acknowledged"]
-
-        page.get_by_role("tab", name="Journal").click()
-        line = page.locator(".journal tr[data-action=acknowledged]")
-        line.wait_for(state="visible")
-        assert "Night shift: Feed barge slackens the stern" in line.inner_text()
-
-        # The current falls: what was acknowledged clears by itself, the other still waits. At once:
-        # a tick before the reading arrives still holds the one before, beyond the domain.
-        for minutes, speed in ((5, 0.92), (5, 0.85), (6, 0.8)):
-            later(live, minutes, speed)
-        assert waited(lambda: raised(live), lambda names: not names) == []
-        watched.until("document.querySelector('.verdict').innerText.includes('1 alarm')")
-
-        # Where the reader looks back, the load that woke everybody is there again.
-        page.keyboard.press("1")
-        ago = live.clock.at - timedelta(minutes=12)
-        then = live.state(at=ago.isoformat())["bridles"][9]["tension_kn"]["mean"]
-        assert then > 80.0
-        page.get_by_label("Look back over").select_option("1 h")
-        page.get_by_label("Time that is shown").focus()
-        for _ in range(2):  # a tenth of the hour each
-            page.keyboard.press("PageDown")
-        watched.until("document.body.dataset.mode == 'past'")
-        row = "document.querySelectorAll('.loads tbody tr')[9].innerText"
-        watched.until(f"{row}.includes('{then:.1f}')")
-        page.keyboard.press("l")
-        watched.until("document.body.dataset.mode == 'live'")
-        assert not watched.complaints
-        assert not watched.foreign_requests(live.address)
-
-
-def test_work_on_the_cage_is_written_down_and_stands_in_the_journal(
-    chromium: Path, live: Running
-) -> None:
-    with opened_browser(chromium, webgl=False) as watched:
-        page = watched.page
-        page.goto(address(live, "read", "ack"))
-        well(watched)
-        page.keyboard.press("5")
-        page.get_by_role("tab", name="Alarms").click()
-        page.get_by_role("tab", name="Journal").click()
-        page.get_by_role("button", name="Write down work").click()
-        page.get_by_label("Which sensor").wait_for(state="hidden")
-        page.get_by_label("What was done").select_option("sensor-moved")
-        page.get_by_label("Which sensor").select_option("depth-2")
-        page.get_by_label("Why").fill("Hung on spoke 5")
-        page.get_by_label("When").fill("2010-01-01T12:00")
-        record = page.get_by_role("dialog").get_by_role("button", name="Write down")
-        record.click()
-        watched.until("document.body.innerText.includes('is not within the 30 days until now')")
-        watched.complaints.clear()  # the browser's own line about the refusal
-        page.get_by_label("When").fill("")
-        record.click()
-        line = page.locator(".journal tr[data-action='sensor moved']")
-        line.wait_for(state="visible")
-        assert "Night shift: Hung on spoke 5" in line.inner_text()
-        assert "depth" in line.inner_text().lower()
-        assert not watched.complaints
-
-
-def test_alarms_of_one_cause_are_acknowledged_together(chromium: Path, live: Running) -> None:
+    page = watched.page
     excursion(live)
-    with opened_browser(chromium, webgl=False) as watched:
-        page = watched.page
-        page.goto(address(live, "read", "ack"))
-        page.get_by_role("tab", name="Alarms").click()
-        page.get_by_role("button", name="Acknowledge all: High load on 2 lines").click()
-        page.get_by_label("Why").fill("Spring tide")
-        page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
-        page.get_by_role("dialog").wait_for(state="hidden")
-        assert all(alarms_of(live)[name]["acknowledged"] for name in LOADED)
-        assert not watched.complaints
+    watched.until("document.querySelector('.verdict').dataset.kind == 'warning'")
+    assert "2 alarms" in page.locator(".verdict").inner_text()
+    assert page.title().startswith("(2)")
+    toast = page.locator(".toast", has_text="bridle 10")
+    toast.get_by_role("button", name="Look").click()
+
+    listed = page.locator("li.alarm", has_text="bridle 10")
+    assert "active, not acknowledged" in listed.inner_text()
+    listed.get_by_role("button", name="Acknowledge: ").click()
+    page.get_by_label("Why").fill("Feed barge slackens the stern")
+    page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
+    watched.until("document.body.innerText.includes('active, acknowledged')")
+    assert alarms_of(live)["load.bridle-10"]["acknowledged"]
+
+    page.get_by_role("tab", name="Journal").click()
+    line = page.locator(".journal tr[data-action=acknowledged]")
+    line.wait_for(state="visible")
+    assert "Night shift: Feed barge slackens the stern" in line.inner_text()
+
+    # The current falls: what was acknowledged clears by itself, the other still waits. At once:
+    # a tick before the reading arrives still holds the one before, beyond the domain.
+    for minutes, speed in ((5, 0.92), (5, 0.85), (6, 0.8)):
+        later(live, minutes, speed)
+    assert waited(lambda: raised(live), lambda names: not names) == []
+    watched.until("document.querySelector('.verdict').innerText.includes('1 alarm')")
+
+    # Where the reader looks back, the load that woke everybody is there again.
+    page.keyboard.press("1")
+    ago = live.clock.at - timedelta(minutes=12)
+    then = live.state(at=ago.isoformat())["bridles"][9]["tension_kn"]["mean"]
+    assert then > 80.0
+    page.get_by_label("Look back over").select_option("1 h")
+    page.get_by_label("Time that is shown").focus()
+    for _ in range(2):  # a tenth of the hour each
+        page.keyboard.press("PageDown")
+    watched.until("document.body.dataset.mode == 'past'")
+    row = "document.querySelectorAll('.loads tbody tr')[9].innerText"
+    watched.until(f"{row}.includes('{then:.1f}')")
+    page.keyboard.press("l")
+    watched.until("document.body.dataset.mode == 'live'")
+    assert not watched.complaints
+    assert not watched.foreign_requests(live.address)
+
+
+def test_work_on_the_cage_is_written_down_and_stands_in_the_journal(watched: Watched) -> None:
+    page = watched.page
+    page.get_by_role("tab", name="Alarms").click()
+    page.get_by_role("tab", name="Journal").click()
+    page.get_by_role("button", name="Write down work").click()
+    page.get_by_label("Which sensor").wait_for(state="hidden")
+    page.get_by_label("What was done").select_option("sensor-moved")
+    page.get_by_label("Which sensor").select_option("depth-2")
+    page.get_by_label("Why").fill("Hung on spoke 5")
+    page.get_by_label("When").fill("2010-01-01T12:00")
+    record = page.get_by_role("dialog").get_by_role("button", name="Write down")
+    record.click()
+    watched.until("document.body.innerText.includes('is not within the 30 days until now')")
+    watched.complaints.clear()  # the browser's own line about the refusal
+    page.get_by_label("When").fill("")
+    record.click()
+    line = page.locator(".journal tr[data-action='sensor moved']")
+    line.wait_for(state="visible")
+    assert "Night shift: Hung on spoke 5" in line.inner_text()
+    assert "depth" in line.inner_text().lower()
+    assert not watched.complaints
+
+
+def test_alarms_of_one_cause_are_acknowledged_together(live: Running, watched: Watched) -> None:
+    page = watched.page
+    excursion(live)
+    page.get_by_role("tab", name="Alarms").click()
+    page.get_by_role("button", name="Acknowledge all: High load on 2 lines").click()
+    page.get_by_label("Why").fill("Spring tide")
+    page.get_by_role("dialog").get_by_role("button", name="Acknowledge").click()
+    page.get_by_role("dialog").wait_for(state="hidden")
+    assert all(alarms_of(live)[name]["acknowledged"] for name in LOADED)
+    assert not watched.complaints
 
 
 def test_a_service_that_is_started_again_is_found_without_a_hand(

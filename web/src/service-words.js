@@ -1,12 +1,11 @@
 // Texts of the service in the reader's language: alarms and concerns by key, other sentences by
 // how they read in English. Whatever the page does not know stays as it came.
 
-import { fixed, localDigits, percent, plain, span } from "./panels/format.js";
+import { capital, fixed, localDigits, percent, plain, span } from "./panels/format.js";
 import { has, inEnglish, language, text } from "./texts/index.js";
 
 const BY_UNIT = { share: percent, s: span };
 const SPANS = { s: "seconds", min: "minutes", h: "hours", days: "days" };
-const capital = (words) => words.replace(/^./, (letter) => letter.toUpperCase());
 
 /** A pattern of what an English text looks like once its values stand in it. */
 function patternOf(template) {

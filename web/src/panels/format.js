@@ -55,7 +55,7 @@ export function half(interval, unit, places = 1) {
 /** Why the twin extrapolates, without the word that stands before it anyway. */
 export function beyond(reason) {
   const words = (reason ?? "").replace(/^Extrapolating:\s*/, "");
-  return words ? words[0].toUpperCase() + words.slice(1) : text("beyond");
+  return words ? capital(words) : text("beyond");
 }
 
 /** A compass direction as its point, e.g. WSW. */
@@ -116,5 +116,8 @@ export function plain(name) {
   return [has(`name.${kind}`) ? text(`name.${kind}`) : kind, ...rest].join(" ");
 }
 
-/** The same with a large first letter, to begin a line. */
-export const titled = (name) => plain(name).replace(/^./, (letter) => letter.toUpperCase());
+/** Words with a large first letter, to begin a line. */
+export const capital = (words) => words.replace(/^./, (letter) => letter.toUpperCase());
+
+/** A name to begin a line. */
+export const titled = (name) => capital(plain(name));

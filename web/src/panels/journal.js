@@ -14,7 +14,7 @@ const SHOWN = 500; // lines; more nobody reads, and the browser would feel them
 export class Journal {
   constructor(holder, model, desk, past) {
     const dialog = new ChangeDialog(desk);
-    this.write = make("button", { type: "button", className: "button", onclick: () => dialog.ask() }, text("change.button"));
+    this.write = make("button", { type: "button", className: "button small", onclick: () => dialog.ask() }, text("change.button"));
     const lines = make("div");
     holder.append(make("p", { className: "journal-write" }, this.write), lines);
     Object.assign(this, { model, desk, past, holder: lines, turn: 0 });

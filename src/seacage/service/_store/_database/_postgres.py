@@ -2,9 +2,10 @@
 
 import time
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import MAXYEAR, UTC, datetime
 from typing import TYPE_CHECKING, Any
+from zlib import crc32
 
 from seacage.service._store._database import _session
 from seacage.service._store._database._checksum import Damage, checksum
@@ -22,6 +23,20 @@ _WORDS = {
     "checked": "",
     "parted": " PARTITION BY RANGE (t)",
 }
+_VIEW_WORDS = {
+    "utc": "timestamp 'epoch' + t * interval '1 microsecond'",
+    # By OFFSET each text is parsed once
+    "samples": f"sample, LATERAL (SELECT ({_session.NO_NAN})::jsonb AS r OFFSET 0) AS parsed",
+    "reading": _session.Fields(
+        "CASE WHEN (r -> '{0}' ->> 1)::int NOT IN (4, 9) THEN (r -> '{0}' ->> 0)::float END"
+    ),
+    "alarms": "jsonb_each(book::jsonb -> 'alarms') AS item",
+    "alarm": _session.Fields("(item.value ->> '{}')"),
+    "moment": _session.Fields("(item.value ->> '{}')::timestamptz AT TIME ZONE 'UTC'"),
+    "line": _session.Fields("(line::jsonb ->> '{}')"),
+    "lines": "jsonb_each(sums::jsonb -> 0) AS item",
+    "sums": _session.Fields("(sums::jsonb ->> {})"),
+}
 
 # Ordered, so that two workers with the same samples never wait for each other; of two samples
 # with one key the first counts, as in SQLite.
@@ -38,13 +53,16 @@ RETURNING cage, stream, t, seq"""
 _PARTITION = """
 CREATE TABLE IF NOT EXISTS {name} (LIKE sample INCLUDING DEFAULTS INCLUDING CONSTRAINTS);
 ALTER TABLE sample ATTACH PARTITION {name} FOR VALUES FROM ({start}) TO ({end})"""
-_THERE = "SELECT relname FROM pg_class WHERE relnamespace = current_schema()::regnamespace"
+_THERE = """
+SELECT relname, obj_description(oid, 'pg_class') FROM pg_class
+WHERE relnamespace = current_schema()::regnamespace"""
 _PARTITIONS = """
 SELECT c.relname FROM pg_inherits i JOIN pg_class c ON c.oid = i.inhrelid
 WHERE i.inhparent = 'sample'::regclass"""
 _WITH_CHECKSUM = """
 SELECT relname FROM pg_class c JOIN pg_attribute a ON a.attrelid = c.oid
 WHERE relnamespace = current_schema()::regnamespace AND attname = 'crc'"""
+_MARK = "Made by seacage"  # begins the comment of its views, which others may have named alike
 _BRIN = "CREATE INDEX IF NOT EXISTS sample_t ON sample USING brin (t)"
 _EARLY = "sample_early"
 _FIRST_MONTH = datetime(2000, 1, 1, tzinfo=UTC)
@@ -190,15 +208,32 @@ class PostgresDatabase(_session.AbstractDatabase):
     def _make_tables(self) -> set[str]:
         with self._writer.transaction():
             self._writer.execute(_LOCK)
-            there = {name for (name,) in self._writer.execute(_THERE).fetchall()}
+            there = dict(self._writer.execute(_THERE).fetchall())
             for statement in (*_session.tables(_WORDS), _BRIN):
                 # Even "if not exists" locks a table that is there, against all that write into it.
                 if statement.split()[5] not in there:  # CREATE TABLE IF NOT EXISTS name
                     self._writer.execute(statement.encode())
             checked = {name for (name,) in self._writer.execute(_WITH_CHECKSUM).fetchall()}
-            for statement in _session.upgrade(_WORDS, there - checked):
+            for statement in _session.upgrade(_WORDS, there.keys() - checked):
                 self._writer.execute(statement.encode())
+            self._make_views(there)
             return {name for (name,) in self._writer.execute(_PARTITIONS).fetchall()}
+
+    def _make_views(self, there: dict[str, str | None]) -> None:
+        """Make the views that are missing or of another seacage.
+
+        What others have named so stays, and so does a view that is being read or that views of
+        others rest upon.
+        """
+        for name, view in _session.views(_VIEW_WORDS).items():
+            mark, made = f"{_MARK} {crc32(view.encode())}", there.get(name, _MARK)
+            if made is None or made == mark or not made.startswith(_MARK):
+                continue
+            with suppress(self._psycopg.Error), self._writer.transaction():
+                self._writer.execute("SET LOCAL lock_timeout = '1s'")
+                self._writer.execute(f"DROP VIEW IF EXISTS {name}".encode())
+                self._writer.execute(view.encode())
+                self._writer.execute(f"COMMENT ON VIEW {name} IS '{mark}'".encode())
 
     def _reach(self) -> None:
         """Connect again, but do not knock without pause."""

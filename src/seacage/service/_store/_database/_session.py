@@ -14,6 +14,10 @@ from seacage.service._store._database._rows import DAY_US, Row
 
 _FIRST = "INSERT INTO tally SELECT cage, '{kind}', {stream}, {day}, count(*) FROM {kind} GROUP BY "
 _KINDS = ("sample", "aggregate", "journal")
+# Readings as JSON that a database knows
+NO_NAN = (
+    "replace(replace(replace(readings, '-Infinity', 'null'), 'Infinity', 'null'), 'NaN', 'null')"
+)
 Answer = list[tuple[Any, ...]]
 
 
@@ -136,9 +140,28 @@ class AbstractDatabase(ABC):
         """Close every connection."""
 
 
+class Fields(dict[str | int, str]):
+    """A part of JSON in a database's words, by its name or place, ``{}`` in the template."""
+
+    def __init__(self, template: str) -> None:
+        self._template = template
+
+    def __missing__(self, name: str | int) -> str:
+        return self._template.format(name)
+
+
 def tables(words: Mapping[str, str]) -> list[str]:
     """Statements that make the tables where there are none, in a database's words."""
-    text = files("seacage.service._store._database").joinpath("schema.sql").read_text("utf-8")
+    return _statements("schema.sql", words)
+
+
+def views(words: Mapping[str, str | Fields]) -> dict[str, str]:
+    """Statements that make the views, by name, in a database's words."""
+    return {one.split()[2]: one for one in _statements("views.sql", words)}
+
+
+def _statements(file: str, words: Mapping[str, str | Fields]) -> list[str]:
+    text = files("seacage.service._store._database").joinpath(file).read_text("utf-8")
     statements = re.sub("^--.*\n", "", text, flags=re.MULTILINE).format_map(words).split(";")
     return [statement.strip() for statement in statements[:-1]]
 

@@ -3,7 +3,7 @@
 import sqlite3
 import time
 from collections.abc import Generator, Iterable, Sequence
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -23,6 +23,20 @@ _WORDS = {
     "keyed": " WITHOUT ROWID, STRICT",
     "checked": " STRICT",
     "parted": " WITHOUT ROWID, STRICT",
+}
+_VIEW_WORDS = {
+    "utc": "strftime('%Y-%m-%d %H:%M:%f', t / 1e6, 'unixepoch')",
+    "samples": "(SELECT *, CASE WHEN json_valid(j) THEN j END AS r "  # noqa: S608
+    f"FROM (SELECT *, {_session.NO_NAN} AS j FROM sample))",
+    "reading": _session.Fields(
+        "CASE WHEN json_extract(r, '$.{0}[1]') NOT IN (4, 9) THEN json_extract(r, '$.{0}[0]') END"
+    ),
+    "alarms": "json_each(book, '$.alarms') AS item",
+    "alarm": _session.Fields("json_extract(item.value, '$.{}')"),
+    "moment": _session.Fields("datetime(json_extract(item.value, '$.{}'))"),
+    "line": _session.Fields("json_extract(line, '$.{}')"),
+    "lines": "json_each(sums, '$[0]') AS item",
+    "sums": _session.Fields("json_extract(sums, '$[{}]')"),
 }
 
 _INSERT = "INSERT INTO sample VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING"
@@ -273,6 +287,7 @@ def _prepare(connection: sqlite3.Connection, path: Path) -> None:
         if _version(connection, path) < _VERSION:
             _make_tables(connection)
         connection.execute("COMMIT")
+    _make_views(connection)
 
 
 def _check_header(path: Path) -> None:
@@ -312,6 +327,17 @@ def _make_tables(connection: sqlite3.Connection) -> None:
         connection.execute(statement)
     connection.execute(f"PRAGMA user_version = {_VERSION}")
     connection.execute(f"PRAGMA application_id = {_seal(connection)}")
+
+
+def _make_views(connection: sqlite3.Connection) -> None:
+    """Make the views that are missing or not as they are now; a full disk goes on without."""
+    views = _session.views(_VIEW_WORDS)
+    made = dict(connection.execute("SELECT name, sql FROM sqlite_schema WHERE type = 'view'"))
+    for name in [name for name in views if views[name] != made.get(name)]:
+        with suppress(sqlite3.OperationalError), connection:
+            connection.execute("BEGIN IMMEDIATE")
+            connection.execute(f"DROP VIEW IF EXISTS {name}")
+            connection.execute(views[name])
 
 
 def _without_checksum(connection: sqlite3.Connection) -> list[str]:
