@@ -69,6 +69,8 @@ class SeaState:
         numbers = {"current_speed": speed, "hs": hs, "tp": tp if hs > 0.0 else 0.0}
         for name, value in {**numbers, "current_shear": shear}.items():
             object.__setattr__(self, name, value)
+        if shear == 0.0:
+            object.__setattr__(self, "shear_to", 0.0)
         for name in ("current_to", "wave_from", "shear_to"):
             degrees = fold_degrees(getattr(self, name), what=f"SeaState: {name}")
             object.__setattr__(self, name, degrees)
