@@ -89,10 +89,10 @@ def check_sample(
         values = {plain[key]: sample.values[key] for key in keys}
         before = anchors.get(group)
         evaluation = evaluate(kind, before, time, values, limits)
-        findings += _named(evaluation.findings, plain)
+        findings += _by_key(evaluation.findings, plain)
         if before is not None:
             own = {key: before.values[name] for key, name in plain.items() if name in before.values}
-            of_the_last = _named(evaluation.of_the_last, plain)
+            of_the_last = _by_key(evaluation.of_the_last, plain)
             amendments += _amendments(sample.stream, before.time, own, of_the_last)
         if evaluation.anchor is not None:
             anchors[group] = evaluation.anchor
@@ -166,7 +166,7 @@ def verdicts_on(record: Record, limits: Limits = DEFAULT_LIMITS) -> tuple[Verdic
         kind, plain = _plain(group, keys)
         columns = {plain[key]: record.values[key] for key in keys}
         for row, one, values in _findings(kind, time, columns, limits):
-            (finding,) = _named([one], plain)
+            (finding,) = _by_key([one], plain)
             name = (finding.key, finding.test, finding.flag)
             if name not in found:
                 own = {key: values[short] for key, short in plain.items() if short in values}
@@ -235,7 +235,7 @@ def _plain(group: str, keys: Sequence[str]) -> tuple[str, dict[str, str]]:
     return "current", dict(zip(keys, GROUPS["current"], strict=True))
 
 
-def _named(findings: Sequence[Finding], plain: Mapping[str, str]) -> list[Finding]:
+def _by_key(findings: Sequence[Finding], plain: Mapping[str, str]) -> list[Finding]:
     """Findings about plain names, by the keys that these stand for."""
     keys = {name: key for key, name in plain.items()}
     return [one._replace(key=keys[one.key]) for one in findings]
