@@ -41,7 +41,7 @@ def with_bins(buoy: Record, velocity: RowBin2, *, seed: int) -> Record:
     return replace(buoy, values=values, flags=flags, notes=(*buoy.notes, note))
 
 
-def settled_bins(
+def bins_of_settled(
     buoy: Record,
     place: Place,
     at_cage: tuple[Even, Even],
@@ -64,7 +64,7 @@ def settled_bins(
     return ocean.over_depth(surface + 0.5 * there, there, BINS)
 
 
-def simulated_bins(
+def bins_of_simulated(
     buoy: Record,
     place: Place,
     weather: Weather,
@@ -75,7 +75,7 @@ def simulated_bins(
 ) -> RowBin2:
     """True velocity in each bin at each of the buoy's times, beside a simulated cage [m/s].
 
-    ``weather``: at the cage. ``rng``: as of ``settled_bins``.
+    ``weather``: at the cage. ``rng``: as of ``bins_of_settled``.
     """
     second = _seconds(buoy)
     if place == "cage":

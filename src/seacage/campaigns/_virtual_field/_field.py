@@ -14,8 +14,8 @@ from seacage.cage import Cage
 from seacage.campaigns._virtual_field import _sensors
 from seacage.campaigns._virtual_field._adcp import (
     Place,
-    settled_bins,
-    simulated_bins,
+    bins_of_settled,
+    bins_of_simulated,
     with_bins,
 )
 from seacage.campaigns._virtual_field._events import Event
@@ -211,7 +211,7 @@ def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> Vir
     }
     record = FieldRecord(
         cage=cage.name,
-        buoy=_sensors.receive_buoy(_profiled(request, profile), hidden, at_buoy, **faults),
+        buoy=_sensors.receive_buoy(_buoy_with_bins(request, profile), hidden, at_buoy, **faults),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
@@ -222,14 +222,14 @@ def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> Vir
     return VirtualField(record=record, truth=exactly, means=truth.means)
 
 
-def _profiled(request: FieldRequest, profile: Place | None) -> Record:
+def _buoy_with_bins(request: FieldRequest, profile: Place | None) -> Record:
     """The buoy's record, with the bins of an ADCP where there is one."""
     if profile is None:
         return request.buoy
     buoy, seed = request.buoy, request.seed
     rng = water_chance(seed)[0]
     truth: dict[str, Any] = {"hidden": request.hidden, "rng": rng, "seed": seed}
-    return with_bins(buoy, simulated_bins(buoy, profile, request.weather, **truth), seed=seed)
+    return with_bins(buoy, bins_of_simulated(buoy, profile, request.weather, **truth), seed=seed)
 
 
 def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
@@ -280,7 +280,7 @@ def _settle(field: _Settled, profile: Place | None) -> VirtualField:
     if profile is not None and sheared is not None:
         at_cage = Even(step=step, values=velocity), Even(step=step, values=sheared)
         (rng,) = np.random.default_rng(seed).spawn(1)
-        bins = settled_bins(buoy, profile, at_cage, hidden=hidden, rng=rng, seed=seed)
+        bins = bins_of_settled(buoy, profile, at_cage, hidden=hidden, rng=rng, seed=seed)
         truth = replace(truth, buoy=with_bins(buoy, bins, seed=seed))
     return VirtualField(record=replace(truth, sensors=seen), truth=exactly)
 

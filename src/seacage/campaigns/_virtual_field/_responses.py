@@ -57,13 +57,13 @@ class Responses:
         the grid count as its largest. Nothing falls below zero: no line pushes, no sensor leaves
         the water.
         """
-        answers = self.signed(velocity, growth)
+        answers = self.answers_of(velocity, growth)
         if shear is not None:
             for slope, part in zip(self.by_shear, shear.T, strict=True):
-                answers += part[:, None] * slope.signed(velocity, growth)
+                answers += part[:, None] * slope.answers_of(velocity, growth)
         return np.maximum(answers, 0.0)
 
-    def signed(
+    def answers_of(
         self, velocity: Float[np.ndarray, "t 2"], growth: PerT
     ) -> Float[np.ndarray, "t sensor"]:
         """Answers of any sign, without a shear, as of ``at``."""
@@ -125,7 +125,7 @@ def true_responses(
     others = Plan.listed((still, *between.seas), name="still and held out")
     runs = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
     if sheared:
-        runs += [(_SHEARED_GROWTH, _sheared_grid()), (_HELD_OUT_GROWTH, _HELD_OUT_SHEARED)]
+        runs += [(_SHEARED_GROWTH, _grid_of_shears()), (_HELD_OUT_GROWTH, _HELD_OUT_SHEARED)]
     total = sum(len(plan) for _, plan in runs)
     by, report, before = hidden.equilibria, progress or no_progress, 0
 
@@ -165,7 +165,7 @@ def true_responses(
     return responses, error
 
 
-def _sheared_grid() -> Plan:
+def _grid_of_shears() -> Plan:
     """Currents with a shear to the north, east, south and west in turn."""
     currents = product(_SHEARED_SPEEDS, _DIRECTIONS[::2], (0.0, 90.0, 180.0, 270.0))
     return Plan.listed(
