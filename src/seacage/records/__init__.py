@@ -33,6 +33,7 @@ from seacage.records._keys import (
     is_direction,
     is_mean_period,
     key_of,
+    plain_key,
 )
 from seacage.records._lines import LINES
 from seacage.records._quality._check import (
@@ -127,6 +128,7 @@ __all__ = [
     "key_of",
     "known_map",
     "moment",
+    "plain_key",
     "read_campaign",
     "read_history",
     "read_limits",

@@ -67,6 +67,12 @@ def key_of(name: str) -> Key | None:
     return replace(known, name=name, long_name=f"{known.long_name}, at {found[2]} m")
 
 
+def plain_key(name: str) -> str:
+    """The key of a quantity without its depth."""
+    found = _BIN.fullmatch(name)
+    return name if found is None else found[1] + found[3]
+
+
 def current_bins(names: Iterable[str]) -> tuple[float, ...]:
     """Depths at which some keys have a current, speed and direction, ascending [m]."""
     there = set(names)

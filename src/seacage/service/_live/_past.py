@@ -9,7 +9,7 @@ import numpy as np
 import structlog
 
 from seacage.conventions import Flag, InputError, ModelError
-from seacage.records import Amendment, Record, Sample, instant
+from seacage.records import Amendment, Record, Sample, bin_keys, current_bins, instant
 from seacage.service._live._clock import floor_time
 from seacage.service._live._twin_shelf import TwinShelf, check_fit
 from seacage.service._schemas._samples import BUOY_KEYS
@@ -193,13 +193,15 @@ def buoy_record(twin: Twin, samples: Sequence[Sample]) -> Record:
     counts.
     """
     kept = list({sample.t: sample for sample in samples}.values())
+    bins = current_bins({key for one in kept for key in one.values})
+    keys = (*BUOY_KEYS, *(key for depth in bins for key in bin_keys(depth)))
     return Record(
         stream=twin.buoy,
         time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),
-        values={key: np.array([one.values.get(key, np.nan) for one in kept]) for key in BUOY_KEYS},
+        values={key: np.array([one.values.get(key, np.nan) for one in kept]) for key in keys},
         flags={
             key: np.array([one.flags.get(key, Flag.MISSING) for one in kept], dtype=np.uint8)
-            for key in BUOY_KEYS
+            for key in keys
         },
         origin=twin.origin,
     )
