@@ -220,7 +220,7 @@ def _panels(assembly: Assembly, flow: loads.SteadyFlow, position: Node3) -> list
     a, b, c, d = panels.corners.T
     first, second = position[c] - position[a], position[d] - position[b]
     area_vector = np.cross(first, second) / 2.0
-    u = np.broadcast_to(flow.direction[0], area_vector.shape)
+    u = np.broadcast_to(flow.at_panels[0], area_vector.shape)
     side = np.where(np.sum(area_vector * u, axis=1) < 0.0, -1.0, 1.0)
     area = np.maximum(np.linalg.norm(area_vector, axis=1), 1e-12)
     normal = area_vector * (side / area)[:, None]
@@ -280,8 +280,8 @@ def _cylinders(cylinders: Cylinders, flow: loads.SteadyFlow, position: Node3) ->
     """Stiffness of a pipe's drag F = ½ q w l |v| v on either end, v = u − (u·t) t, as it turns."""
     i, j = cylinders.ends.T
     t, _ = direction(position, cylinders.ends)
-    u = flow.direction[0]
-    slide = t @ u
+    u = np.broadcast_to(flow.at_pipes[0], t.shape)
+    slide = np.sum(t * u, axis=1)
     v = u - slide[:, None] * t
     speed = np.linalg.norm(v, axis=1)
     slow = np.where(speed > 1e-9, slide / np.maximum(speed, 1e-9), 0.0)

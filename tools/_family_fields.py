@@ -37,15 +37,25 @@ def _numbers(words: str) -> Sequence[int]:
 
 
 def field_of(
-    cage: Cage, number: int, water: Water, given: argparse.Namespace, *, name: str
+    cage: Cage,
+    number: int,
+    water: Water,
+    given: argparse.Namespace,
+    *,
+    name: str,
+    profile: Literal["buoy", "cage"] | None = None,
 ) -> VirtualField:
-    """A settled field of 50 days, kept in the output folder under a name."""
+    """A settled field of 50 days, kept in the output folder under a name.
+
+    ``profile``: where an ADCP is; None for none.
+    """
     return virtual_field(
         cage,
         generated_current(number, start=START, days=DAYS),
         hidden=TruthParameters.of_family(number, water=water, unseal=given.unseal),
         seed=number,
         method="settle",
+        profile=profile,
         kept=given.out / name,
         workers=given.workers,
     )

@@ -8,11 +8,18 @@ the last 25 against what the sensors would read without errors. The baselines ar
 and learn from the readings that level 2 learns from: the low fidelity as it is, a Gaussian process
 of the sensor alone, AR1, least squares on (low fidelity, u, u^2, harmonics) and boosted trees.
 Fields and scores are kept in OUT; stopped, it goes on. Virtual field.
+
+With ``--profiles CAMPAIGN``, one of ``--plan profile``, the cages feel the shear, and twins that
+take an ADCP's profile, at the buoy and at the cage, stand beside the twin of the current at one
+depth in place of the baselines.
 """
 
+import argparse
 import json
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, Literal
 
 import numpy as np
 from _family_fields import (
@@ -32,9 +39,10 @@ from seacage.studies._paper._sensor_baselines import (
     TWIN,
     predict_by_sensor_baselines,
 )
-from seacage.twin import Training, Twin, train
+from seacage.twin import Metocean, Training, Twin, train
 
 TRAINING = Training(restarts=1)
+PROFILED = replace(TRAINING, inputs=("current", "profile"))
 BASELINES = ("low fidelity", *SENSOR_BASELINES)
 GROUPS = ("depth", "shackle")
 # Of a sensor: its name, its level, its errors by method, and its coverage by third of the load
@@ -47,10 +55,17 @@ def main() -> None:
     """Train and score, field by field, and sum up."""
     options = options_for(__doc__, truths="15-24")
     options.add_argument("--water", choices=("tame", "coastal"), action="append")
+    options.add_argument("--profiles", type=Path, metavar="CAMPAIGN")
     given = options.parse_args()
     campaign = read_campaign(given.campaign)
     cage = Cage.from_toml(campaign.cage_toml)
     base = train(cage, campaign, training=Training(restarts=0))
+    if given.profiles:
+        sheared = replace(PROFILED, restarts=0)
+        bases = base, train(cage, read_campaign(given.profiles), training=sheared)
+        for water in given.water or ("tame", "coastal"):
+            _score_profiles(cage, bases, water, given)
+        return
     for water in given.water or ("tame", "coastal"):
         fields: list[list[Score]] = []
         for number in given.truths:
@@ -83,6 +98,67 @@ def _scores(cage: Cage, base: Twin, field: VirtualField) -> Iterator[Score]:
         coverage = share_by_third(inside, level_1).tolist()
         level = int(answer.sensor_level[column])
         yield {"sensor": name, "level": level, "error": error, "coverage": coverage}
+
+
+def _score_profiles(
+    cage: Cage, bases: tuple[Twin, Twin], water: Water, given: argparse.Namespace
+) -> None:
+    """Errors of twins with a profile over those of the one without, cage by cage and together."""
+    ratios: dict[tuple[str, str], list[float]] = {}
+    for number in given.truths:
+        kept = given.out / f"{water}-{number}-profile.json"
+        if not kept.is_file():
+            kept.write_text(json.dumps(_profile_scores(cage, bases, number, water, given)), "utf-8")
+        rows = json.loads(kept.read_text("utf-8"))
+        for place in ("buoy", "cage"):
+            for group in GROUPS:
+                own = [one for one in rows if one["sensor"].startswith(group)]
+                ratio = np.log([one[place]["error"] / one["one depth"]["error"] for one in own])
+                ratios.setdefault((place, group), []).append(float(ratio.mean()))
+                cover = {
+                    name: round(float(np.mean([one[name]["coverage"] for one in own])), 3)
+                    for name in (place, f"{place}, given one depth")
+                }
+                print(
+                    f"{water} {number}, {group}, profile at the {place}: "
+                    f"{np.exp(ratio.mean()):.3f}, coverage {cover}"
+                )
+    for (place, group), all_cages in ratios.items():
+        print(
+            f"{water}, {group}, profile at the {place}: "
+            f"{np.exp(np.mean(all_cages)):.3f} of one depth"
+        )
+
+
+def _profile_scores(
+    cage: Cage, bases: tuple[Twin, Twin], number: int, water: Water, given: argparse.Namespace
+) -> list[Score]:
+    """Errors and coverage of each sensor, by what is known of the current."""
+    found: dict[str, dict[str, Any]] = {}
+    plain, profiled = bases
+    cases: tuple[tuple[str, Literal["buoy", "cage"], Twin, Training], ...] = (
+        ("one depth", "buoy", plain, TRAINING),
+        ("buoy", "buoy", profiled, PROFILED),
+        ("cage", "cage", profiled, PROFILED),
+    )
+    for name, place, base, training in cases:
+        field = field_of(
+            cage, number, water, given, name=f"{water}-{number}-profile", profile=place
+        )
+        twin = train(cage, None, field.record, base=base, training=training)
+        time = scored_times(field.truth.buoy)
+        known = twin.travel_time.water_at(field.record.buoy, time)
+        waters: dict[str, Metocean] = {name: known}
+        if name != "one depth":
+            waters[f"{name}, given one depth"] = replace(known, profile=None)
+        for what, one in waters.items():
+            answer = twin.predict(one).sensor
+            for column, sensor in enumerate(twin.sensor_names):
+                off = np.abs(answer.mean[:, column] - values_at(field.truth.sensors[sensor], time))
+                inside = float(np.mean(off <= 1.96 * answer.std[:, column]))
+                score = {"error": float(off.mean()), "coverage": inside}
+                found.setdefault(sensor, {"sensor": sensor})[what] = score
+    return list(found.values())
 
 
 def _sum_up(water: Water, group: str, fields: list[list[Score]]) -> None:

@@ -29,7 +29,7 @@ STILL = SteadyFlow(
     direction=np.zeros((1, 3)),
     **{name: np.zeros((1, 0)) for name in ("pressure", "constant", "slope", "third")},
     **{name: np.zeros((1, 0)) for name in ("lift", "lift_second")},
-    pipe_pressure=np.zeros(1),
+    pipe_pressure=np.zeros((1, 1)),
 )
 
 

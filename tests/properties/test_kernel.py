@@ -32,6 +32,7 @@ ANCHORED = anchor_assembly(
     wake=st.booleans(),
     waves=st.booleans(),
     pipe_drag=st.booleans(),
+    sheared=st.booleans(),
     shaken=st.floats(0.0, 3.0),
     raised=st.sampled_from([0.0, 4.0, 100.0]),  # out of the water in part or all
     narrowed=st.sampled_from([1.0, 0.1, 0.01]),  # into folds
@@ -47,6 +48,7 @@ def test_the_kernel_computes_the_definition(
     wake,
     waves,
     pipe_drag,
+    sheared,
     shaken,
     raised,
     narrowed,
@@ -62,7 +64,13 @@ def test_the_kernel_computes_the_definition(
     velocity[0] *= rng.integers(2)  # now and then still water
     variance = rng.uniform(0.0, 0.5, (cases, len(assembly.panels.depth))) if waves else None
     flow = steady_flow(
-        assembly, velocity, law=law, wake=wake, pipe_drag=pipe_drag, wave_variance=variance
+        assembly,
+        velocity,
+        law=law,
+        wake=wake,
+        pipe_drag=pipe_drag,
+        wave_variance=variance,
+        shear=rng.uniform(-0.8, 0.8, (cases, 2)) if sheared else None,
     )
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
     position[..., 2] += raised
@@ -107,7 +115,8 @@ def test_the_kernel_takes_the_defined_step_towards_balance(
     rng = np.random.default_rng(seed)
     cage = some_cage(rng, rings, spokes, cylinder)
     assembly = ANCHORED if anchored else Assembly.of(cage)
-    flow = steady_flow(assembly, rng.uniform(-1.0, 1.0, (cases, 2)), law=law)
+    mean, shear = rng.uniform(-1.0, 1.0, (2, cases, 2))
+    flow = steady_flow(assembly, mean, law=law, shear=0.5 * shear if held else None)
     position = assembly.position + rng.normal(scale=shaken, size=(cases, *assembly.position.shape))
     position[..., 2] += raised
     tension = rng.uniform(0.1, 1e4, (cases, len(assembly.bars.length)))

@@ -21,10 +21,19 @@ _RANGES: Mapping[str, Mapping[str, Range]] = {
     "paper": {},
     "default": {"period_ratio": (0.8, 2.2)},
     "current": {"hs": (0.0, 0.0)},
+    "profile": {"hs": (0.0, 0.0)},
     "loads": {"hs": (0.05, 3.0), "period_ratio": (0.63, 3.0)},
 }
+# Mean and standard deviation of the shear along the current and to its right [m/s]: 1,980 profiles
+# of a bottom-mounted ADCP in 29.5 m of water at Long Beach (Nova Scotia, 2019), as
+# ``ocean.current_modes`` has them. Their part to the right is 0 in the mean within 0.006.
+LONG_BEACH_SHEAR: tuple[Range, Range] = ((-0.11, 0.22), (0.0, 0.14))
+_MOST_DEVIATIONS = 2.5  # from the mean, of drawn shears
 # What a plan has beside its ranges
-_LIMITS: Mapping[str, Mapping[str, Any]] = {"loads": {"longest_tp": 18.0, "corner_every": 16}}
+_LIMITS: Mapping[str, Mapping[str, Any]] = {
+    "loads": {"longest_tp": 18.0, "corner_every": 16},
+    "profile": {"shear": LONG_BEACH_SHEAR},
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,6 +84,7 @@ class Plan:
         wave_from: Range = (0.0, 360.0),
         longest_tp: float = math.inf,
         corner_every: int | None = None,
+        shear: tuple[Range, Range] | None = None,
         name: str = "sample",
     ) -> Self:
         """Draw sea states that fill the ranges evenly: a scrambled Sobol sequence.
@@ -104,6 +114,9 @@ class Plan:
             One case in so many lies on a corner of the ranges of current speed, Hs and period,
             in turn, in directions of a draw of their own; None for no corners. A surrogate is
             least sure there.
+        shear
+            Mean and standard deviation of the current's shear along it, and of that to its right
+            [m/s], normal and at most 2.5 deviations from the mean; None for uniform currents.
         name
             Of the plan.
 
@@ -120,12 +133,15 @@ class Plan:
             "wave_from": _range("wave_from", wave_from, "deg", 360.0),
         }
         low, high = np.array(list(ranges.values())).T
-        share = _sobol(seed, cases, len(ranges))
+        sobol = _sobol(seed, cases, len(ranges) + (0 if shear is None else 2))
+        share = sobol[:, : len(ranges)]
         if corner_every is not None:
             _put_on_corners(share, corner_every, seed)
         drawn = low + (high - low) * share
         longest = np.maximum(longest_tp / (5.0 * np.sqrt(np.maximum(drawn[:, 2], 1e-9))), low[3])
         drawn[:, 3] = low[3] + (np.minimum(high[3], longest) - low[3]) * share[:, 3]
+        if shear is not None:
+            drawn = np.hstack([drawn, _normal(sobol[:, len(ranges) :], shear)])
         seas = tuple(_sea(*row) for row in drawn.tolist())
         return cls(name=name, seas=seas, duration=duration, seed=seed)
 
@@ -142,7 +158,8 @@ class Plan:
         """Draw from ranges that have a name.
 
         ``paper``: the paper's, where Tp = 5 sqrt(Hs). ``default``: the same with
-        Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves. ``loads``:
+        Tp / (5 sqrt(Hs)) from 0.8 to 2.2, as real seas have it. ``current``: no waves.
+        ``profile``: the same, in currents that change with depth as an ADCP measured it. ``loads``:
         waves of 0.05 m and more, with Tp from the steepness limit to three times 5 sqrt(Hs), 18 s
         at most, and one case in 16 on a corner of the ranges.
 
@@ -192,7 +209,8 @@ class Plan:
         """The sea states of a CSV file, one a row.
 
         Its columns are current_speed_m_s and current_to_deg, and if it likes hs_m, tp_s and
-        wave_from_deg. An empty hs_m or wave_from_deg counts as 0, an empty tp_s as 5 sqrt(Hs).
+        wave_from_deg, current_shear_m_s and shear_to_deg. An empty tp_s counts as 5 sqrt(Hs),
+        another empty cell as 0.
         """
         path, seas = Path(path), read_sea_states(Path(path))
         return cls(name=name or path.stem, seas=seas, duration=duration, seed=seed)
@@ -224,8 +242,10 @@ class Plan:
     def to_json(self) -> str:
         """JSON text with the unit in every key, one case per line."""
         head = {"name": self.name, "duration_s": self.duration, "seed": self.seed}
+        sheared = any(sea.current_shear for sea in self.seas)
+        doors = {key: name for key, name in SEA_COLUMNS.items() if sheared or "shear" not in name}
         cases = ",\n".join(
-            json.dumps({door: getattr(sea, name) for door, name in SEA_COLUMNS.items()})
+            json.dumps({door: getattr(sea, name) for door, name in doors.items()})
             for sea in self.seas
         )
         return f'{json.dumps(head)[:-1]}, "cases": [\n{cases}\n]}}\n'
@@ -260,9 +280,33 @@ def _range(name: str, given: Sequence[float], unit: str, top: float = math.inf) 
     return low, high
 
 
-def _sea(speed: float, to: float, hs: float, ratio: float, wave_from: float) -> SeaState:
-    tp = 5.0 * ratio * math.sqrt(hs)
-    return SeaState(current_speed=speed, current_to=to, hs=hs, tp=tp, wave_from=wave_from)
+def _sea(
+    speed: float,
+    to: float,
+    hs: float,
+    ratio: float,
+    wave_from: float,
+    along: float = 0.0,  # of the shear, as the next
+    right: float = 0.0,
+) -> SeaState:
+    return SeaState(
+        current_speed=speed,
+        current_to=to,
+        hs=hs,
+        tp=5.0 * ratio * math.sqrt(hs),
+        wave_from=wave_from,
+        current_shear=math.hypot(along, right),
+        shear_to=(to + math.degrees(math.atan2(right, along))) % 360.0,
+    )
+
+
+def _normal(share: np.ndarray, moments: tuple[Range, Range]) -> np.ndarray:
+    """Normal numbers from even ones, column by column."""
+    from scipy.special import ndtr, ndtri
+
+    tail = float(ndtr(-_MOST_DEVIATIONS))
+    mean, deviation = np.array(moments).T
+    return mean + deviation * ndtri(tail + (1.0 - 2.0 * tail) * share)
 
 
 def _put_on_corners(share: np.ndarray, every: int, seed: int) -> None:

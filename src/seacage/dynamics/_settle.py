@@ -76,9 +76,10 @@ def settle(
 
     Net loads by a screen law with a wake on the down-stream half, tension-only netting with its
     weight, elastic collar afloat, sinker tube on the cylinder's edge, bridles on a frame with buoys
-    and anchor lines or on elastic frame corners. Netting above z = 0 is dry. Left out: the change
-    of the current with depth, and the motion of the water and the cage in waves, which ``simulate``
-    has. A case's numbers do not depend on the cases beside it nor on ``workers``.
+    and anchor lines or on elastic frame corners. Netting above z = 0 is dry. Where the current
+    changes with depth, each part meets that of its depth in the design. Left out: the motion of the
+    water and the cage in waves, which ``simulate`` has. A case's numbers do not depend on the cases
+    beside it nor on ``workers``.
 
     A cage may have several equilibria. They are sought from so many first shapes: the net swung as
     the load asks, hanging straight, nearly flat, then swung aside. The first found that is not
@@ -113,6 +114,7 @@ def settle(
     assembly = part(moor(cage, mooring, hold_collar=hold_collar), parted)
     velocity = np.array([state.current_velocity for state in seas])
     variance = _wave_variance(cage, assembly, seas) if mean_waves else None
+    shear = np.array([state.shear_velocity for state in seas])
     laws: tuple[Law, ...] = law_of_each(law, len(seas))
     flow = steady_flow(
         assembly,
@@ -121,6 +123,7 @@ def settle(
         wake=wake,
         pipe_drag=collar_drag,
         wave_variance=variance,
+        shear=shear if shear.any() else None,
         tuning=Tuning(skin_friction=skin_friction, lift_factor=lift_factor),
     )
     found = equilibria(assembly, flow, starts=starts, workers=workers)
@@ -147,7 +150,8 @@ def net_load(
     assembly = moor(cage, "catenary") if isinstance(cage, Structure) else Assembly.of(cage)
     tuning = Tuning(skin_friction=skin_friction, lift_factor=lift_factor)
     velocity = sea.current_velocity[None]
-    flow = steady_flow(assembly, velocity, law=law, wake=wake, tuning=tuning)
+    shear = sea.shear_velocity[None] if sea.current_shear else None
+    flow = steady_flow(assembly, velocity, law=law, wake=wake, shear=shear, tuning=tuning)
     return total_net_force(assembly.panels, flow, node_position[None])[0]
 
 

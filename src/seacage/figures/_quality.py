@@ -7,7 +7,7 @@ from seacage.conventions import Flag
 from seacage.figures._comparison import date_axis
 from seacage.figures._style import FIT, SENSOR, head, page
 from seacage.figures._types import Axes, Figure
-from seacage.records import KEYS, Record
+from seacage.records import Record, is_direction, key_of, plain_key
 
 _SUSPECT = "#b8860b"
 _MISSING = "#2f74b5"
@@ -45,7 +45,9 @@ def _panel(axes: Axes, record: Record, key: str) -> None:
     kept = record.usable(key)
     low, high = _limits(values[kept] if np.any(kept) else values[np.isfinite(values)], key)
     time, line = _thin(record.time[kept], values[kept])
-    turning = KEYS[key].unit == "deg"
+    turning, known = is_direction(key), key_of(key)
+    assert known is not None  # the record refused it
+    depth = known.long_name.partition(", at ")[2]
     axes.plot(
         *(_broken(time, line) if not turning else (time, line)),
         color=SENSOR,
@@ -73,12 +75,14 @@ def _panel(axes: Axes, record: Record, key: str) -> None:
             # An empty line that is not clipped lies in 1970, and the layout makes room for it.
             clip_on=not len(rows),
         )
-    axes.set(ylim=(low, high), ylabel=f"{_LABELS[key]} [{KEYS[key].unit}]")
+    axes.set(
+        ylim=(low, high), ylabel=f"{_LABELS[plain_key(key)]} {depth}".rstrip() + f" [{known.unit}]"
+    )
     axes.margins(x=0.01)
 
 
 def _limits(values: Float[np.ndarray, " t"], key: str) -> tuple[float, float]:
-    if KEYS[key].unit == "deg":
+    if is_direction(key):
         return 0.0, 360.0
     if not values.size:
         return 0.0, 1.0

@@ -9,6 +9,50 @@ from jaxtyping import Float
 from seacage.conventions import InputError
 from seacage.ocean._spread import turn_vectors
 
+MODES_DEPTH = 30.0
+"""Depth down to which the modes of a current are taken: its mean, and its shear [m]."""
+LEAST_SPAN = 4.0  # between the least and the most of the depths that modes are fitted to [m]
+
+
+def over_depth(
+    mean: Float[np.ndarray, "*sea 2"],
+    shear: Float[np.ndarray, "*sea 2"],
+    depth: Float[np.ndarray, " depth"],
+) -> Float[np.ndarray, "*sea depth 2"]:
+    """Velocity at some depths of a current of two modes, (east, north) [m/s].
+
+    It changes evenly down to ``MODES_DEPTH`` and no more below.
+
+    ``mean``: over that depth [m/s]. ``shear``: velocity at that depth less that at the surface;
+    its part across the mean is the veer [m/s]. ``depth``: below still water [m].
+    """
+    share = np.minimum(depth, MODES_DEPTH) / MODES_DEPTH - 0.5
+    return mean[..., None, :] + share[:, None] * shear[..., None, :]
+
+
+def current_modes(
+    depth: Float[np.ndarray, " bin"], velocity: Float[np.ndarray, "t bin 2"]
+) -> tuple[Float[np.ndarray, "t 2"], Float[np.ndarray, "t 2"]]:
+    """Mean and shear of profiles, as ``over_depth`` takes them, by least squares [m/s].
+
+    Bins below ``MODES_DEPTH`` are left out. Both are NaN where the bins with a velocity are one, or
+    within ``LEAST_SPAN``.
+
+    ``depth``: of the middle of each bin [m]. ``velocity``: NaN where a bin has none [m/s].
+    """
+    known = np.isfinite(velocity).all(axis=-1) & (depth <= MODES_DEPTH)
+    share = np.where(known, depth / MODES_DEPTH - 0.5, 0.0)
+    own = np.where(known[..., None], velocity, 0.0)
+    count = np.maximum(known.sum(axis=-1), 1)
+    middle, level = share.sum(axis=-1) / count, own.sum(axis=1) / count[:, None]
+    off = np.where(known, share - middle[:, None], 0.0)
+    slope = np.einsum("tb,tbx->tx", off, own) / np.maximum((off**2).sum(axis=-1), 1e-9)[:, None]
+    span = np.where(known, depth, -np.inf).max(axis=-1) - np.where(known, depth, np.inf).min(
+        axis=-1
+    )
+    slope[~(span >= LEAST_SPAN)] = np.nan
+    return level - middle[:, None] * slope, slope
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurrentProfile:

@@ -1,7 +1,7 @@
-"""One sea state: a current and long-crested waves."""
+"""One sea state: a current, its shear, and long-crested waves."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float
@@ -23,7 +23,7 @@ def steepness_limit(tp: float) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeaState:
-    """Uniform current and irregular waves, validated.
+    """Current and irregular waves, validated.
 
     Raises InputError: a negative, infinite or missing number, a direction outside [0, 360], or a
     sea steeper than ``steepness_limit``.
@@ -31,7 +31,7 @@ class SeaState:
     Parameters
     ----------
     current_speed
-        [m/s], at most ``MAX_CURRENT_SPEED``.
+        Mean over depth [m/s], at most ``MAX_CURRENT_SPEED``.
     current_to
         Where the current goes, clockwise from true north [deg].
     hs
@@ -40,6 +40,9 @@ class SeaState:
         Peak period [s]; None means 5 sqrt(hs), the steepest sea the default spectrum takes.
     wave_from
         Where the waves come from, clockwise from true north [deg].
+    current_shear, shear_to
+        Length of the current's shear over depth, as ``over_depth`` takes it [m/s], and where it
+        points, clockwise from true north [deg]; a uniform current by default.
     """
 
     current_speed: float
@@ -47,6 +50,9 @@ class SeaState:
     hs: float = 0.0
     tp: float | None = None
     wave_from: float = 0.0
+    # Left out of the text, which the hash of a campaign is of
+    current_shear: float = field(default=0.0, repr=False)
+    shear_to: float = field(default=0.0, repr=False)
 
     def __post_init__(self) -> None:
         speed = _number("current_speed", self.current_speed, "m/s")
@@ -55,13 +61,17 @@ class SeaState:
                 f"SeaState: current_speed = {speed:g} m/s is above {MAX_CURRENT_SPEED:g} m/s. "
                 "Check that it is in m/s, not in cm/s or knots."
             )
+        shear = _number("current_shear", self.current_shear, "m/s")
         hs = _number("hs", self.hs, "m")
         tp = 5.0 * math.sqrt(hs) if self.tp is None else _number("tp", self.tp, "s")
         if hs > 0.0:
             _check_steepness(hs, tp)
-        for name, value in (("current_speed", speed), ("hs", hs), ("tp", tp if hs > 0.0 else 0.0)):
+        numbers = {"current_speed": speed, "hs": hs, "tp": tp if hs > 0.0 else 0.0}
+        for name, value in {**numbers, "current_shear": shear}.items():
             object.__setattr__(self, name, value)
-        for name in ("current_to", "wave_from"):
+        if shear == 0.0:
+            object.__setattr__(self, "shear_to", 0.0)
+        for name in ("current_to", "wave_from", "shear_to"):
             degrees = fold_degrees(getattr(self, name), what=f"SeaState: {name}")
             object.__setattr__(self, name, degrees)
 
@@ -69,6 +79,11 @@ class SeaState:
     def current_velocity(self) -> Float[np.ndarray, "2"]:
         """Velocity of the current, (east, north) [m/s]."""
         return towards(np.array(self.current_speed), np.array(self.current_to))
+
+    @property
+    def shear_velocity(self) -> Float[np.ndarray, "2"]:
+        """Shear of the current over depth, (east, north) [m/s]."""
+        return towards(np.array(self.current_shear), np.array(self.shear_to))
 
     @property
     def peak_period(self) -> float:

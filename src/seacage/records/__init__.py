@@ -24,7 +24,17 @@ from seacage.records._history_file import (
     read_history,
     write_history,
 )
-from seacage.records._keys import KEYS, NO_MEAN_PERIOD, Key, is_mean_period
+from seacage.records._keys import (
+    KEYS,
+    NO_MEAN_PERIOD,
+    Key,
+    bin_keys,
+    current_bins,
+    is_direction,
+    is_mean_period,
+    key_of,
+    plain_key,
+)
 from seacage.records._lines import LINES
 from seacage.records._quality._check import (
     AHEAD,
@@ -47,6 +57,7 @@ from seacage.records._quality._limits import (
     Range,
     Season,
     Steadiness,
+    groups_of,
 )
 from seacage.records._quality._limits_file import read_limits
 from seacage.records._readers._cf import NetcdfMap
@@ -97,6 +108,7 @@ __all__ = [
     "aligned",
     "alike",
     "amended",
+    "bin_keys",
     "campaign_results",
     "campaign_unsummed",
     "campaign_variable",
@@ -105,15 +117,20 @@ __all__ = [
     "check_sample",
     "check_stream",
     "create_campaign",
+    "current_bins",
     "export_campaign",
     "finish_campaign",
+    "groups_of",
     "inspect_file",
     "instant",
+    "is_direction",
     "is_evaluated",
     "is_mean_period",
     "is_withdrawn",
+    "key_of",
     "known_map",
     "moment",
+    "plain_key",
     "read_campaign",
     "read_history",
     "read_limits",

@@ -8,11 +8,10 @@ import numpy as np
 from jaxtyping import Bool, Float, Int, Shaped
 
 from seacage.conventions import Flag, InputError
-from seacage.records._quality._limits import GROUPS
+from seacage.records._quality._limits import groups_of
 from seacage.records._record import Record
 from seacage.records._times import microseconds
 
-_CURRENT = {"current_speed_m_s", "current_to_deg"}
 _OPPOSED = 0.1  # where the mean of unit vectors is shorter, they have no common direction [-]
 
 
@@ -61,10 +60,10 @@ def aligned(
     times = _times(record, clock, start, end)
     values: dict[str, np.ndarray] = {}
     flags: dict[str, np.ndarray] = {}
-    for keys in GROUPS.values():
-        known = tuple(key for key in keys if key in record.values)
+    for group, known in groups_of(record.values):
         # A current is averaged whole, all else key by key.
-        for part in [known] if set(known) >= _CURRENT else [(key,) for key in known]:
+        whole = group.startswith("current") and len(known) > 1
+        for part in [known] if whole else [(key,) for key in known]:
             found, flag = _average(record, part, times, clock)
             values |= found
             flags |= dict.fromkeys(part, flag)

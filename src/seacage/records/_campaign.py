@@ -20,10 +20,12 @@ from seacage.records._campaign_store import (
     MEAN,
     NOT_RUN,
     SEA,
+    SHEAR,
     SPREAD,
     campaign_unsummed,
     fill_campaign,
     not_a_campaign,
+    sea_names,
 )
 from seacage.records._lines import LINES
 from seacage.records._netcdf_file import check_netcdf, write_netcdf
@@ -111,6 +113,8 @@ class CampaignRecord:
             )
         for name in sorted(self.lines):  # campaigns of 0.1.0 have none
             digest.update(self.lines[name].tobytes())
+        if len(sea_names(self.seas)) > len(SEA):  # what their text leaves out
+            digest.update(repr([(sea.current_shear, sea.shear_to) for sea in self.seas]).encode())
         digest.update(", ".join(self.parted).encode())
         return digest.hexdigest()
 
@@ -124,7 +128,7 @@ def read_campaign(path: str | Path) -> CampaignRecord:
     with _open(path) as dataset:
         attributes, there = dict(dataset.attrs), {str(name) for name in dataset.variables}
         optional = (part.name for part in fields(CampaignRecord) if part.default is None)
-        names = there.intersection((*SEA, *MEAN, "result", *optional))
+        names = there.intersection((*SEA, *SHEAR, *MEAN, "result", *optional))
         variables = {name: np.asarray(dataset[name].values) for name in names}
         lines = {
             name: np.asarray(dataset[f"line_{name}"].values)
@@ -142,10 +146,11 @@ def read_campaign(path: str | Path) -> CampaignRecord:
             f"{path}: every case of this campaign has been run, but their second moment is not "
             "summed yet. Say `seacage campaign finish` with this folder."
         )
-    seas = zip(*(variables.pop(name).tolist() for name in SEA), strict=True)
+    of_seas = [name for name in (*SEA, *SHEAR) if name in variables]
+    seas = zip(*(variables.pop(name).tolist() for name in of_seas), strict=True)
     return CampaignRecord(
         cage_toml=attributes["cage"],
-        seas=tuple(SeaState(**dict(zip(SEA, row, strict=True))) for row in seas),
+        seas=tuple(SeaState(**dict(zip(of_seas, row, strict=True))) for row in seas),
         law=attributes["law"],
         seed=int(attributes["seed"]),
         version=attributes["product_version"],
@@ -167,7 +172,8 @@ def write_campaign(campaign: CampaignRecord, path: Path, **attributes: str) -> N
 
     Raises RecordError: there is something at ``path``.
     """
-    values: dict[str, object] = {n: [getattr(sea, n) for sea in campaign.seas] for n in SEA}
+    seas, names = campaign.seas, sea_names(campaign.seas)
+    values: dict[str, object] = {name: [getattr(sea, name) for sea in seas] for name in names}
     values |= {name: getattr(campaign, name) for name in (*MEAN, "result", *SPREAD)}
     values |= {f"line_{name}": each for name, each in campaign.lines.items()}
     about = {"line_names": campaign.line_names, "line_kinds": campaign.line_kinds}

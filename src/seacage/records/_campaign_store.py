@@ -6,7 +6,7 @@
 import shutil
 import uuid
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from glob import escape
 from pathlib import Path
@@ -42,6 +42,18 @@ SEA = {
         ("wave_from", "wave_from_deg", "where the waves come from, clockwise from true north"),
     )
 }
+
+# And in a store of seas that have one
+SHEAR = {
+    "current_shear": Variable(_CASE, "m s-1", "current 30 m deep less that at the surface"),
+    "shear_to": Variable(_CASE, "degree", "where that points, clockwise from true north"),
+}
+
+
+def sea_names(seas: Iterable[SeaState]) -> tuple[str, ...]:
+    """Names of ``SeaState`` that a store of some seas holds."""
+    return (*SEA, *SHEAR) if any(sea.current_shear for sea in seas) else tuple(SEA)
+
 
 # What every campaign answers
 MEAN = {
@@ -134,7 +146,9 @@ def create_campaign(
     size |= {"coordinate": 3 * nodes, "other_coordinate": 3 * nodes}
     size |= {"mooring_line": 0 if mooring is None else len(mooring.names)}
     chunk = {**size, "case": min(block, len(seas)), "block": 1}
-    given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in SEA}
+    names = sea_names(seas)
+    variables |= {name: SHEAR[name] for name in names if name in SHEAR}
+    given: dict[str, Any] = {name: [getattr(sea, name) for sea in seas] for name in names}
     given |= {"wave_seed": wave_seeds, "mooring_seed": mooring_seeds, "quantile": quantile_levels}
     if mooring is not None:
         given |= {f"line_{name}": getattr(mooring, name) for name in CONSTANT}
@@ -154,7 +168,7 @@ def fill_campaign(
     """
     if path.exists():
         raise RecordError(f"{path}: there is something already. Give another name, or delete it.")
-    known = _variables(in_time=True, quantiles=True, moment=False, lines=True)
+    known = SHEAR | _variables(in_time=True, quantiles=True, moment=False, lines=True)
     variables = {name: known[name] for name in values}
     size = {
         dim: length
@@ -358,7 +372,7 @@ def _attributes(name: str, variable: Variable) -> dict[str, Any]:
     attributes = variable.attributes
     if "axis" in variable.dims:
         attributes["comment"] = "axis: x east, y north, z up; z = 0 at still water"
-    if "case" in variable.dims and name not in SEA:
+    if "case" in variable.dims and name not in {**SEA, **SHEAR}:
         attributes["coordinates"] = " ".join(SEA)
     if name == "result":
         attributes["flag_values"] = [NOT_RUN, *(int(code) for code in Result)]

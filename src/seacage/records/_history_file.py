@@ -15,7 +15,7 @@ from jaxtyping import Float, Int
 from seacage.conventions import Origin, RecordError, Result, parse_json
 from seacage.ocean import SeaState
 from seacage.records._brief import brief
-from seacage.records._campaign_store import SEA
+from seacage.records._campaign_store import SEA, SHEAR, sea_names
 from seacage.records._lines import LINES, line_variable
 from seacage.records._netcdf_file import CELL_METHODS, Variable, open_netcdf, write_netcdf
 
@@ -243,7 +243,8 @@ def _scalars(record: HistoryRecord) -> dict[str, Any]:
         "result": ((), np.int8(record.result), result),
         **{
             name: known._replace(dims=(), long_name="").holding(float(getattr(record.sea, name)))
-            for name, known in SEA.items()
+            for name, known in {**SEA, **SHEAR}.items()
+            if name in sea_names([record.sea])
         },
     }
 
@@ -255,7 +256,7 @@ def _record(dataset: "xarray.Dataset") -> HistoryRecord:
         cage_name=str(attributes["cage"]),
         cage_toml=str(attributes["cage_toml"]),
         bridle_names=tuple(str(name) for name in values["bridle"]),
-        sea=SeaState(**{name: float(values[name]) for name in SEA}),
+        sea=SeaState(**{name: float(values[name]) for name in (*SEA, *SHEAR) if name in values}),
         line_names=tuple(map(str, values.get("mooring_line", ()))),
         line_kinds=tuple(map(str, values.get("line_kind", ()))),
         lines={

@@ -1,8 +1,8 @@
 """The quantities that streams carry: their door keys, units and CF names."""
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
 
 from seacage.conventions import InputError
 
@@ -51,8 +51,38 @@ KEYS: Mapping[str, Key] = {
 }
 """Every quantity that a sample or a record may carry, by its door key."""
 
-# The keys whose 360 degrees is 0
-DIRECTIONS = frozenset(name for name, key in KEYS.items() if key.unit == "deg")
+_BIN = re.compile(r"(current_(?:speed|to))_((?:0|[1-9]\d{0,2})(?:\.\d)?)m(_m_s|_deg)")
+
+
+def bin_keys(depth: float) -> tuple[str, str]:
+    """Keys of the speed and the direction of the current at a depth [m], in steps of 0.1 m."""
+    return f"current_speed_{depth:.4g}m_m_s", f"current_to_{depth:.4g}m_deg"
+
+
+def key_of(name: str) -> Key | None:
+    """The quantity of a door key, at a depth or none; None where no quantity has the key."""
+    found = _BIN.fullmatch(name)
+    if found is None or (known := KEYS.get(found[1] + found[3])) is None:
+        return KEYS.get(name)
+    return replace(known, name=name, long_name=f"{known.long_name}, at {found[2]} m")
+
+
+def plain_key(name: str) -> str:
+    """The key of a quantity without its depth."""
+    found = _BIN.fullmatch(name)
+    return name if found is None else found[1] + found[3]
+
+
+def current_bins(names: Iterable[str]) -> tuple[float, ...]:
+    """Depths at which some keys have a current, speed and direction, ascending [m]."""
+    there = set(names)
+    depths = {float(found[2]) for name in there if (found := _BIN.fullmatch(name))}
+    return tuple(sorted(depth for depth in depths if there.issuperset(bin_keys(depth))))
+
+
+def is_direction(name: str) -> bool:
+    """Whether a key is of a direction, whose 360 degrees is 0."""
+    return name.endswith("_deg")
 
 
 NO_MEAN_PERIOD = (
@@ -74,10 +104,13 @@ def is_mean_period(name: str) -> bool:
 
 def check_keys(names: Mapping[str, object], *, where: str) -> None:
     """Refuse a key that no quantity has. Raises InputError: at the first unknown key."""
-    if not KEYS.keys() >= names.keys():
-        unknown = next(name for name in names if name not in KEYS)
+    if KEYS.keys() >= names.keys():
+        return
+    unknown = next((name for name in names if key_of(name) is None), None)
+    if unknown is not None:
         raise InputError(
             f"{where}: no quantity has the key {unknown!r}. "
-            f"The keys, with their units, are {', '.join(KEYS)}."
+            f"The keys, with their units, are {', '.join(KEYS)}, and of a current at a depth "
+            f"{' and '.join(bin_keys(5.0))}."
             f"{' ' + NO_MEAN_PERIOD if is_mean_period(unknown) else ''}"
         )

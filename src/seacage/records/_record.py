@@ -10,7 +10,7 @@ from jaxtyping import Bool, Shaped
 
 from seacage.conventions import Flag, InputError, Origin
 from seacage.records._brief import brief
-from seacage.records._keys import DIRECTIONS, check_keys
+from seacage.records._keys import check_keys, is_direction
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant
 
@@ -45,7 +45,7 @@ class Record:
                 "Sort them and keep one row of each time, or use read_record, which does."
             )
         values = {key: np.asarray(one, dtype=np.float64) for key, one in self.values.items()}
-        for key in DIRECTIONS.intersection(values):  # as in a sample
+        for key in filter(is_direction, values):  # as in a sample
             values[key] = np.where(values[key] == 360.0, 0.0, values[key])
         unseen = np.full(time.shape, Flag.NOT_EVALUATED, dtype=np.uint8)
         flags = {key: np.asarray(self.flags.get(key, unseen), dtype=np.uint8) for key in values}

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
 from seacage.conventions import Flag, InputError
-from seacage.records._keys import DIRECTIONS, check_keys
+from seacage.records._keys import check_keys, is_direction
 
 _STREAM = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 
@@ -37,7 +37,7 @@ class Sample:
             )
         # At a door 360 degrees is 0; anything beyond is left for the check to flag.
         values = {
-            key: 0.0 if value == 360.0 and key in DIRECTIONS else float(value)
+            key: 0.0 if value == 360.0 and is_direction(key) else float(value)
             for key, value in self.values.items()
         }
         object.__setattr__(self, "t", self.t.astimezone(UTC))

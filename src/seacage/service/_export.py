@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result
 from seacage.ocean import SeaState
-from seacage.records import KEYS, SEA_COLUMNS, Record
+from seacage.records import SEA_COLUMNS, Record, key_of
 from seacage.twin import Answer, Twin, interval_reason
 
 if TYPE_CHECKING:
@@ -228,8 +228,9 @@ def _dataset(replayed: Replayed) -> "xarray.Dataset":
         "in_domain": _variable("time", answer.in_domain.astype(np.int8), "1", learned),
         "reason": _variable("time", np.array(answer.reason, dtype=object)),
         **{
-            key: _variable("time", values, KEYS[key].cf_unit, KEYS[key].long_name)
+            key: _variable("time", values, known.cf_unit, known.long_name)
             for key, values in buoy.values.items()
+            if (known := key_of(key)) is not None
         },
         **_interval_variables("depth_low", "depth_sensor", low, None, m),
         **_interval_variables("depth", "depth_sensor", best, sensor, m),

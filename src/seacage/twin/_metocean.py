@@ -8,16 +8,17 @@ import numpy as np
 from jaxtyping import Bool, Float
 
 from seacage.conventions import Rows, towards
-from seacage.ocean import SeaState
-from seacage.records import Record
+from seacage.ocean import SeaState, current_modes
+from seacage.records import Record, bin_keys, current_bins
 from seacage.surrogates import Domain, current_features, wave_features
 
-Input = Literal["current", "waves"]
+Input = Literal["current", "waves", "profile"]
 
 # The door keys that each kind of input is made from
 INPUT_KEYS: Mapping[Input, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
     "waves": ("hs_m", "wave_from_deg"),
+    "profile": (),  # of whatever bins there are; without, it is not known
 }
 
 WATER_KEYS = (*INPUT_KEYS["current"], *INPUT_KEYS["waves"], "tp_s")  # all door keys of the water
@@ -36,22 +37,27 @@ class Metocean(Rows):
     ``hs``, ``tp``: significant wave height [m] and peak period [s]; where there are no waves the
     period is of no meaning.
     ``wave_direction``: unit vector the waves travel along, (east, north) [-].
+    ``profile``: mean and shear of the current over depth, as ``ocean.over_depth`` takes them,
+    (east, north) of either [m/s]; None where nothing measures it.
     """
 
     current_velocity: Float[np.ndarray, "case 2"]
     hs: Float[np.ndarray, " case"]
     tp: Float[np.ndarray, " case"]
     wave_direction: Float[np.ndarray, "case 2"]
+    profile: Float[np.ndarray, "case 4"] | None = None
 
     @classmethod
     def of(cls, sea: SeaState | Sequence[SeaState]) -> Self:
-        """Read sea states; one of them makes one row."""
+        """Read sea states, whose currents are known over depth; one of them makes one row."""
         seas = [sea] if isinstance(sea, SeaState) else sea
+        profile = [[*s.current_velocity, *s.shear_velocity] for s in seas]
         return cls(
             current_velocity=np.array([s.current_velocity for s in seas]).reshape(-1, 2),
             hs=np.array([s.hs for s in seas], dtype=float),
             tp=np.array([s.peak_period for s in seas], dtype=float),
             wave_direction=np.array([s.wave_direction for s in seas]).reshape(-1, 2),
+            profile=np.array(profile).reshape(-1, 4),
         )
 
     @classmethod
@@ -63,7 +69,10 @@ class Metocean(Rows):
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Float[np.ndarray, " case"]], count: int) -> Self:
-        """Read columns named and united as at the doors; a missing one is all NaN."""
+        """Read columns named and united as at the doors; a missing one is all NaN.
+
+        Two bins and more of an ADCP make the profile.
+        """
         unknown = np.full(count, np.nan)
         speed, current_to, hs, wave_from, tp = (columns.get(key, unknown) for key in WATER_KEYS)
         return cls(
@@ -71,12 +80,14 @@ class Metocean(Rows):
             hs=hs,
             tp=tp,
             wave_direction=-towards(np.ones(count), wave_from),
+            profile=_profile(columns),
         )
 
     @classmethod
     def of_record(cls, record: Record) -> Self:
         """Read every row of a buoy's record; a value that failed its checks is NaN."""
-        keys = [key for key in WATER_KEYS if key in record.values]
+        bins = (key for depth in current_bins(record.values) for key in bin_keys(depth))
+        keys = [key for key in (*WATER_KEYS, *bins) if key in record.values]
         usable = {key: np.where(record.usable(key), record.values[key], np.nan) for key in keys}
         return cls.from_columns(usable, len(record))
 
@@ -85,22 +96,50 @@ class Metocean(Rows):
 
     @property
     def table(self) -> Float[np.ndarray, "case 6"]:
-        """All its numbers, side by side."""
+        """Its numbers but for the profile, side by side."""
         return np.column_stack([self.current_velocity, self.hs, self.wave_direction, self.tp])
 
+    @property
+    def whole(self) -> Float[np.ndarray, "case number"]:
+        """All its numbers, side by side."""
+        return self.table if self.profile is None else np.hstack([self.table, self.profile])
+
     @classmethod
-    def from_table(cls, table: Float[np.ndarray, "case 6"]) -> Self:
-        """Read what ``table`` gave."""
+    def from_table(cls, table: Float[np.ndarray, "case number"]) -> Self:
+        """Read what ``table`` or ``whole`` gave."""
         return cls(
             current_velocity=table[:, :2].copy(),
             hs=table[:, 2].copy(),
             wave_direction=table[:, 3:5].copy(),
             tp=table[:, 5].copy(),
+            profile=table[:, 6:].copy() if table.shape[1] > 6 else None,
         )
+
+    @property
+    def currents(self) -> Float[np.ndarray, "case component"]:
+        """Current at one depth and, where it is measured, the profile, side by side [m/s]."""
+        own = self.current_velocity
+        return own if self.profile is None else np.hstack([own, self.profile])
+
+    def with_currents(self, currents: Float[np.ndarray, "case component"]) -> Self:
+        """Return the water with other numbers of ``currents``."""
+        profile = None if self.profile is None else currents[:, 2:]
+        return replace(self, current_velocity=currents[:, :2], profile=profile)
+
+    def through(self, inputs: Iterable[Input]) -> Self:
+        """Return the water as models of some inputs take it.
+
+        Those of the profile take the mean over depth for the current; it is NaN where there is no
+        profile.
+        """
+        if "profile" not in inputs:
+            return self
+        profile = np.full((len(self), 4), np.nan) if self.profile is None else self.profile
+        return replace(self, current_velocity=profile[:, :2].copy(), profile=profile)
 
     def same(self, other: Self) -> bool:
         """Whether the other holds the same numbers; two unknown ones are the same."""
-        return np.array_equal(self.table, other.table, equal_nan=True)
+        return np.array_equal(self.whole, other.whole, equal_nan=True)
 
     def limited(self, *, current_speed: float, hs: float) -> Self:
         """Return the nearest milder water: slower and lower, in the same directions.
@@ -126,18 +165,32 @@ class Metocean(Rows):
         """Features of the surrogates.
 
         The current enters as (speed, east, north), so that neither slack water nor north has
-        a seam; the waves as (hs, hs east, hs north). The peak period is left out: ``Models.loads``
-        has it.
+        a seam; the waves as (hs, hs east, hs north), the profile as its shear, like the current.
+        The peak period is left out: ``Models.loads`` has it.
         """
+        still = np.zeros((len(self), 2))
         columns = {
             "current": lambda: current_features(self.current_velocity),
             "waves": lambda: wave_features(self.hs, self.wave_direction),
+            "profile": lambda: current_features(
+                still if self.profile is None else self.profile[:, 2:]
+            ),
         }
         return np.hstack([columns[name]() for name in inputs])
 
     def known(self, inputs: tuple[Input, ...]) -> Bool[np.ndarray, " case"]:
-        """Rows in which all of these inputs are known."""
-        return np.all(np.isfinite(self.features(inputs)), axis=1)
+        """Rows in which all of these inputs are known; a profile need not be."""
+        needed: tuple[Input, ...] = tuple(one for one in inputs if one != "profile")
+        return np.all(np.isfinite(self.features(needed)), axis=1)
+
+
+def _profile(columns: Mapping[str, Float[np.ndarray, " case"]]) -> np.ndarray | None:
+    """Mean and shear of the bins of an ADCP; None where they are not even two."""
+    bins = current_bins(columns)
+    if len(bins) < 2:
+        return None
+    known = [towards(*(columns[key] for key in bin_keys(depth))) for depth in bins]
+    return np.hstack(current_modes(np.array(bins), np.stack(known, axis=1)))
 
 
 def nearest_inside(

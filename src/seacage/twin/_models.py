@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Self
 
 import numpy as np
-from jaxtyping import Bool, Float
+from jaxtyping import Bool, Float, Int
 
 from seacage.cage import Cage, MooringLines, mooring_lines
 from seacage.conventions import YEAR
@@ -33,6 +33,7 @@ from seacage.twin._lines._line_correction import LineCorrection, correct_lines, 
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
 from seacage.twin._parted import PartedLines
+from seacage.twin._profiles import Profiles, mix, without_profile
 
 BLOCK_ROWS = 512  # rows predicted at once: the shapes of more would crowd a small computer's memory
 ROUNDING = 1e-9  # what sines and cosines may add to a speed [m/s]
@@ -69,6 +70,8 @@ class Models:
     shape: FittedShapeGP  # level 1 of the node positions [m]
     loads: LineLoads | None = None  # level 1 of all lines' loads in waves, where it was trained
     parted: PartedLines | None = None  # and of what is left of them where one has parted
+    # Of models that take the profile, where they are given a current at one depth
+    profiles: Profiles | None = None
     # Level 2 by sensor, of its readings [N] or [m]
     upper: Mapping[str, Correction] = field(default_factory=dict[str, Correction])
     # Level 2 of lines' loads in waves, by the name of the shackle
@@ -155,12 +158,13 @@ class Models:
 
         Outside the domain the variance grows by the square of how far the mean has moved from
         the nearest milder water inside, as the models are not reliable beyond it. Outside its
-        own domain, the variance of level 2 grows in the same way.
+        own domain, the variance of level 2 grows in the same way. Models that take a profile and
+        are given the current at one depth answer for all profiles that it may stand for.
         """
         valid = np.array([not one for one in trouble], dtype=bool)
         known = water.rows(valid)
         blocks = [
-            self._block(known.rows(slice(first, first + BLOCK_ROWS)))
+            self._block_over_profiles(known.rows(slice(first, first + BLOCK_ROWS)))
             for first in range(0, max(len(known), 1), BLOCK_ROWS)
         ]
         of_rows = {name: _fill([block[name] for block in blocks], valid) for name in blocks[0]}
@@ -252,6 +256,24 @@ class Models:
         """Lines whose loads were learned, with their strength."""
         names = self.loads.names if self.loads else ()
         return mooring_lines(self.cage, anchored=True).named(names)
+
+    def _block_over_profiles(self, water: Metocean) -> dict[str, Any]:
+        """``_block`` where the profile is known, and its mean over profiles where it is not."""
+        if self.profiles is None:
+            return self._block(water)
+        unknown, members = without_profile(water), len(self.profiles.draws)
+        here, other = np.flatnonzero(~unknown), np.flatnonzero(unknown)
+        blocks = [self._block(water.rows(here).through(self.inputs))] if len(here) else []
+        few = BLOCK_ROWS // members
+        for first in range(0, len(other), few):
+            each = self.profiles.members(water.rows(other[first : first + few]))
+            blocks.append(mix(self._block(each.through(self.inputs)), members))
+        if not blocks:
+            return self._block(water.through(self.inputs))
+        back = np.argsort(np.concatenate([here, other]))
+        every = np.ones(len(water), dtype=bool)
+        joined = {name: _fill([block[name] for block in blocks], every) for name in blocks[0]}
+        return {name: _rows_of(one, back) for name, one in joined.items()}
 
     def _block(self, water: Metocean) -> dict[str, Any]:
         """Predict in known water: the fields of an answer that have rows."""
@@ -360,6 +382,12 @@ def _widen(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]
     std = here.std.copy()
     std[beyond] = np.hypot(std[beyond], here.mean[beyond] - edge.mean)
     return replace(here, std=std)
+
+
+def _rows_of(value: Any, some: Int[np.ndarray, " row"]) -> Any:
+    if isinstance(value, Prediction):
+        return Prediction(mean=value.mean[some], std=value.std[some])
+    return value[some]
 
 
 def _fill(parts: Sequence[Any], valid: Bool[np.ndarray, " case"]) -> Any:

@@ -1,7 +1,7 @@
 """Pairs of a sensor's readings and the buoy's samples in force at their times."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 
 import numpy as np
@@ -10,7 +10,7 @@ from jaxtyping import Bool, Float, Shaped
 from seacage.conventions import Flag, InputError, Rows
 from seacage.records import FieldRecord, Record, Sample, instant
 from seacage.surrogates import block_means, spread_design
-from seacage.twin._metocean import Metocean, input_keys
+from seacage.twin._metocean import Input, Metocean, input_keys
 from seacage.twin._travel_time import TravelTime
 
 HOLD_S = 10800.0  # longest time for which a buoy's value is held [s]; the live twin's default
@@ -37,6 +37,11 @@ class Pairs(Rows):
 
     def __len__(self) -> int:
         return len(self.value)
+
+    def through(self, inputs: tuple[Input, ...]) -> "Pairs":
+        """Pairs whose water is as models of some inputs take it, where these are known."""
+        taken = replace(self, metocean=self.metocean.through(inputs))
+        return taken.rows(taken.metocean.known(inputs))
 
 
 def align(
@@ -147,7 +152,7 @@ def _sound(record: Record, key: str, *, suspect: bool) -> Bool[np.ndarray, " t"]
 def _block_means(pairs: Pairs, mean_s: float) -> Pairs:
     length = round(mean_s * 1e6)
     microsecond = pairs.time.astype("datetime64[us]").astype(np.int64)
-    columns = (*pairs.metocean.table.T, pairs.value)
+    columns = (*pairs.metocean.whole.T, pairs.value)
     window, (*water, value) = block_means(microsecond // length, *columns)
     return Pairs(
         time=(window * length + length // 2).astype("datetime64[us]"),

@@ -1,7 +1,7 @@
 """Time that the water takes from the buoy to the cage."""
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float, Int, Shaped
@@ -58,16 +58,17 @@ class TravelTime:
         self,
         # Of the sound samples, ascending; one at least
         time: Int[np.ndarray, " sample"],
-        velocity: Float[np.ndarray, "sample 2"],
+        # As ``Metocean.currents``: the first two say how fast it comes, the others may be NaN
+        velocity: Float[np.ndarray, "sample component"],
         at: Instants,  # not before the first of them
-    ) -> Current:
+    ) -> Float[np.ndarray, "row component"]:
         """Current at the cage at some times, from the samples that the buoy had sent by then.
 
         The newest sample says how fast the water comes. Between two samples the current is
         straight; across a gap, and before the first sample, it is taken as the newest is.
         """
         newest = np.searchsorted(time, at, side="right") - 1
-        travel = np.rint(1e6 * self.of(velocity[newest])).astype(np.int64)
+        travel = np.rint(1e6 * self.of(velocity[newest, :2])).astype(np.int64)
         left = np.minimum(at - travel, time[newest])
         before = np.searchsorted(time, left, side="right") - 1
         after = np.minimum(before + 1, newest)
@@ -75,7 +76,7 @@ class TravelTime:
         share = ((left - time[before]) / step)[:, None]
         between = (1.0 - share) * velocity[before] + share * velocity[after]
         known = (before >= 0) & (before < newest) & (step <= 1e6 * LONGEST_GAP_S)
-        return np.where(known[:, None], between, velocity[newest])
+        return np.where(known[:, None] & np.isfinite(between), between, velocity[newest])
 
     def water_at(self, buoy: Record, time: Shaped[np.ndarray, " t"]) -> Metocean:
         """Water at the cage at some times, from what a buoy had reported by then.
@@ -92,14 +93,14 @@ class TravelTime:
         water = reported.rows(rows)
         sound = np.isfinite(reported.current_velocity).all(axis=1)
         known = (rows >= 0) & np.isfinite(water.current_velocity).all(axis=1)
-        velocity = np.full((len(rows), 2), np.nan)
+        currents = np.full_like(water.currents, np.nan)
         if known.any():
-            velocity[known] = self.current_at(
+            currents[known] = self.current_at(
                 microseconds(buoy.time[sound]),
-                reported.current_velocity[sound],
+                reported.currents[sound],
                 microseconds(time[known]),
             )
-        return replace(water, current_velocity=velocity)
+        return water.with_currents(currents)
 
 
 def microseconds(time: Shaped[np.ndarray, " t"]) -> Instants:

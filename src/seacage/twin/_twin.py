@@ -1,6 +1,6 @@
 """The trained twin: its models, where they come from, and the live loop around them."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -11,7 +11,7 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.conventions import Flag, InputError, Origin, duration_text
 from seacage.ocean import SeaState
-from seacage.records import Amendment, Record, Sample, instant
+from seacage.records import Amendment, Record, Sample, bin_keys, current_bins, instant
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
@@ -277,7 +277,7 @@ class Twin:
         if not counted:
             return state
         water = Metocean.joined(*(one for _, _, one in counted))
-        table, row = np.unique(water.table, axis=0, return_inverse=True)
+        table, row = np.unique(water.whole, axis=0, return_inverse=True)
         answer = self.models.answer(Metocean.from_table(table), [""] * len(table))
         factors = dict(state.tracked)
         for (name, sample, _), place in zip(counted, row.ravel(), strict=True):
@@ -367,15 +367,14 @@ class Twin:
         past = state.around(self.buoy, left, keys) if left < sent else ()
         if not past:
             return reported
-        columns = {key: np.array([one[key].values[key] for one in past]) for key in keys}
-        known = Metocean.from_columns(columns, len(past)).current_velocity
+        known = Metocean.joined(*(_currents_of(one, keys, reported) for one in past)).currents
         times = [*(one[keys[0]].t for one in past), sent]
         velocity = travel.current_at(
             microseconds(np.array([*map(instant, times)])),
-            np.vstack([known, reported.current_velocity]),
+            np.vstack([known, reported.currents]),
             microseconds(np.array([instant(at)])),
         )
-        return replace(reported, current_velocity=velocity)
+        return reported.with_currents(velocity)
 
     def _is_known(self, sample: Sample, key: str, t: datetime) -> bool:
         """Whether a value passed its checks and, unless every answer needs it, is fresh."""
@@ -395,6 +394,18 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         now = sample.t if state.clock is None else max(sample.t, state.clock)
         state, events = twin.step(state, sample, now)
         yield from events
+
+
+def _currents_of(newest: Mapping[str, Sample], keys: Sequence[str], like: Metocean) -> Metocean:
+    """Water of the newest values of a time, with a profile where other water has one."""
+    current = {key: np.array([newest[key].values[key]]) for key in keys}
+    if like.profile is None:
+        return Metocean.from_columns(current, 1)
+    bins = [key for depth in current_bins(newest) for key in bin_keys(depth)]
+    sound = {key: is_usable(newest[key], key) for key in bins}
+    values = {key: np.array([newest[key].values[key] if sound[key] else np.nan]) for key in bins}
+    own = Metocean.from_columns(values | current, 1)
+    return own if own.profile is not None else replace(own, profile=np.full((1, 4), np.nan))
 
 
 def _fault(buoy: str, key: str, flag: int) -> str:

@@ -3,6 +3,7 @@
 import inspect
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from seacage.campaigns import Plan, Simulator, campaign_status, run_campaign, ru
 from seacage.campaigns._cases import answer_block
 from seacage.conventions import InputError, RecordError, Result, SeacageError
 from seacage.dynamics import PHYSICS, simulate
-from seacage.records import read_campaign
+from seacage.records import export_campaign, read_campaign
 from seacage.service._cli._campaign import run as run_command
 from stand_in import StandIn
 
@@ -336,3 +337,17 @@ def test_what_is_not_requested_is_as_in_a_single_simulation(asks: Callable[..., 
     shared = {"law", "mooring", "ramp", "spin_up", "time_step"}
     assert shared <= own.keys()
     assert {name: own[name] for name in shared} == {name: single[name] for name in shared}
+
+
+def test_a_campaign_keeps_the_shear_of_its_currents(
+    small_cage: Cage, stand_in: StandIn, tmp_path: Path
+) -> None:
+    plan = Plan.named("profile", 0, 8)
+    record = run_campaign(small_cage, plan, tmp_path / "c", workers=1, method="settle")
+    assert record.seas == plan.seas
+    export_campaign(tmp_path / "c", tmp_path / "c.nc")
+    assert read_campaign(tmp_path / "c.nc").seas == plan.seas
+    # their text leaves the shear out, and their hash does not
+    seas = tuple(replace(sea, current_shear=0.0, shear_to=0.0) for sea in plan.seas)
+    assert repr(seas) == repr(plan.seas)
+    assert replace(record, seas=seas).sha256 != record.sha256

@@ -215,3 +215,23 @@ def test_the_plan_for_loads_has_steep_and_long_seas_and_its_corners() -> None:
     assert np.histogram(corner[:, 1], 4, (0.0, 360.0))[0].min() >= 5
     assert np.delete(speed, np.s_[15::16]).min() > 0.0
     assert plan.seas[:100] == Plan.named("loads", 3, 100).seas
+
+
+def test_the_plan_of_profiles_has_the_shears_that_an_adcp_measured(tmp_path: Path) -> None:
+    plan = Plan.named("profile", 0, 1024)
+    shear = np.array([sea.shear_velocity for sea in plan.seas])
+    along = np.array([sea.current_velocity / sea.current_speed for sea in plan.seas])
+    to_the_right = np.column_stack([along[:, 1], -along[:, 0]])
+    for way, mean, deviation in ((along, -0.11, 0.22), (to_the_right, 0.0, 0.14)):
+        part = np.sum(shear * way, axis=1)
+        assert part.mean() == pytest.approx(mean, abs=0.005)
+        # cut at 2.5 deviations, a normal has 0.95 of its own
+        assert part.std() == pytest.approx(0.95 * deviation, rel=0.03)
+    plan.write(tmp_path / "plan.json")
+    assert Plan.read(tmp_path / "plan.json") == plan
+
+
+def test_a_plan_of_uniform_currents_is_written_as_before() -> None:
+    plan = Plan.named("current", 0, 8)
+    assert "shear" not in plan.to_json()
+    assert plan.sha256 == "17748dfb1f99195eb3787fc76afdf70ed57865d28aaff41ca995396091367b4f"

@@ -5,13 +5,19 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
 from seacage.campaigns._virtual_field import _sensors
+from seacage.campaigns._virtual_field._adcp import (
+    Place,
+    bins_of_settled,
+    bins_of_simulated,
+    with_bins,
+)
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._responses import Responses, true_responses
 from seacage.campaigns._virtual_field._simulated import (
@@ -22,7 +28,12 @@ from seacage.campaigns._virtual_field._simulated import (
 )
 from seacage.campaigns._virtual_field._timetable import Timetable, reading_times
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.campaigns._virtual_field._weather import current_at_cage, shear
+from seacage.campaigns._virtual_field._weather import (
+    Even,
+    current_at_cage,
+    shear,
+    water_chance,
+)
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import FieldRecord, Record, TrueMeans
 
@@ -64,6 +75,7 @@ def virtual_field(
     events: Sequence[Event] = (),
     every_s: float | None = None,
     timetable: Timetable | None = None,
+    profile: Place | None = None,
     kept: str | Path | None = None,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -74,6 +86,7 @@ def virtual_field(
     growth. Settled, it answers at once: its equilibria are interpolated on a grid of currents and
     growths, with the error on the record's notes; waves, depth profile and inertia are left out, of
     a shear its mean over the net's depth is kept, and the buoy's stream passes through as it came.
+    With a profile the settled cage feels the shear itself, to first order.
 
     Parameters
     ----------
@@ -96,6 +109,9 @@ def virtual_field(
         Time between readings [s]; None for 2 s simulated, 60 s settled.
     timetable
         How simulated time is cut; None for ``Timetable.over`` the buoy's record.
+    profile
+        Where an ADCP measures the current at several depths, which the buoy's stream then carries:
+        at the buoy or at the cage. None for no ADCP.
     kept
         Folder that keeps finished stretches, or the settled grid, for another call: after a
         stop it goes on from them, to the same bits. None begins anew.
@@ -112,7 +128,7 @@ def virtual_field(
         request = _request(cage, buoy, every_s=every_s, timetable=timetable, **truth)
         with _folder(kept) as folder:
             stretches = simulate_share(request, Path(folder), workers=workers, progress=progress)
-            return _simulate(request, gather_truth(request, stretches))
+            return _simulate(request, gather_truth(request, stretches), profile)
     if waves is not None or events or timetable is not None:
         raise InputError(
             "virtual_field: a settled field has no waves, no events and no timetable. "
@@ -120,8 +136,21 @@ def virtual_field(
         )
     time = reading_times(buoy, every_s, usual_s=60.0)
     with _folder(kept) as store:
-        grid = true_responses(cage, hidden, store=Path(store), workers=workers, progress=progress)
-    return _settle(cage, buoy, hidden, seed, time, *grid)
+        options: dict[str, Any] = {"workers": workers, "progress": progress}
+        grid = true_responses(cage, hidden, sheared=bool(profile), store=Path(store), **options)
+    return _settle(_Settled(cage, buoy, hidden, seed, time, *grid), profile)
+
+
+class _Settled(NamedTuple):
+    """A settled field before its sensors, with the answers of its cage and their errors."""
+
+    cage: Cage
+    buoy: Record
+    hidden: TruthParameters
+    seed: int
+    time: Shaped[np.ndarray, " t"]
+    answers: Responses
+    error: Float[np.ndarray, "case sensor"]
 
 
 def virtual_field_share(
@@ -165,7 +194,7 @@ def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:
     return tempfile.TemporaryDirectory() if kept is None else nullcontext(kept)
 
 
-def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
+def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> VirtualField:
     """Give the truth to the sensors, and the buoy's word to the radio."""
     cage, hidden, time = request.cage, request.hidden, request.time
     chance = np.random.default_rng([request.seed, *b"sensors"])
@@ -182,7 +211,7 @@ def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
     }
     record = FieldRecord(
         cage=cage.name,
-        buoy=_sensors.receive_buoy(request.buoy, hidden, at_buoy, **faults),
+        buoy=_sensors.receive_buoy(_buoy_with_bins(request, profile), hidden, at_buoy, **faults),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
@@ -191,6 +220,16 @@ def _simulate(request: FieldRequest, truth: Truth) -> VirtualField:
     notes = (*record.notes, *(f"Event: {event}." for event in request.events), _EXACT)
     exactly = replace(record, buoy=request.buoy, sensors=exact, notes=notes)
     return VirtualField(record=record, truth=exactly, means=truth.means)
+
+
+def _buoy_with_bins(request: FieldRequest, profile: Place | None) -> Record:
+    """The buoy's record, with the bins of an ADCP where there is one."""
+    if profile is None:
+        return request.buoy
+    buoy, seed = request.buoy, request.seed
+    rng = water_chance(seed)[0]
+    truth: dict[str, Any] = {"hidden": request.hidden, "rng": rng, "seed": seed}
+    return with_bins(buoy, bins_of_simulated(buoy, profile, request.weather, **truth), seed=seed)
 
 
 def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
@@ -212,20 +251,15 @@ def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _settle(
-    cage: Cage,
-    buoy: Record,
-    hidden: TruthParameters,
-    seed: int,
-    time: Shaped[np.ndarray, " t"],
-    answers: Responses,
-    error: Float[np.ndarray, "case sensor"],
-) -> VirtualField:
+def _settle(field: _Settled, profile: Place | None) -> VirtualField:
     """The current as it is, its answers, and what the sensors make of them."""
+    cage, buoy, hidden, seed, time, answers, error = field
     _, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
     velocity = current_over_net(buoy, seconds, hidden=hidden, seed=seed)
-    exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY))
+    step = float(seconds[1] - seconds[0])
+    sheared = None if profile is None else shear(hidden.profile, len(seconds), step, seed=seed)
+    exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY), shear=sheared)
     truth = FieldRecord(
         cage=cage.name,
         buoy=buoy,
@@ -243,6 +277,11 @@ def _settle(
         for (name, sensor), rng in zip(truth.sensors.items(), own, strict=True)
     }
     exactly = replace(truth, notes=(*truth.notes, _EXACT))
+    if profile is not None and sheared is not None:
+        at_cage = Even(step=step, values=velocity), Even(step=step, values=sheared)
+        (rng,) = np.random.default_rng(seed).spawn(1)
+        bins = bins_of_settled(buoy, profile, at_cage, hidden=hidden, rng=rng, seed=seed)
+        truth = replace(truth, buoy=with_bins(buoy, bins, seed=seed))
     return VirtualField(record=replace(truth, sensors=seen), truth=exactly)
 
 

@@ -1,6 +1,7 @@
 """The true cage's answers on a grid of currents and growths, and smoothly between them."""
 
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,11 @@ _GROWTHS = (0.0, 0.5, 1.0)
 _HELD_OUT_GROWTH = 0.25
 _HELD_OUT = 31
 _WRAP = 4
+# Of a shear: its length, and the currents and the growth with which its effect is found
+_SHEAR = 0.15
+_SHEARED_SPEEDS = (0.1, 0.3, 0.55, 0.9, 1.35)
+_SHEARED_GROWTH = 0.5
+_HELD_OUT_SHEARED = Plan.named("profile", 0, 16)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -35,23 +41,44 @@ class Responses:
     direction: Float[np.ndarray, " direction"]
     growth: Float[np.ndarray, " growth"]  # grid of the fouling's growth [-]
     value: Float[np.ndarray, "growth speed direction sensor"]  # depths [m] and tensions [kN]
+    # What a shear of 1 m/s to the east and to the north adds; none where it was not settled
+    by_shear: tuple["Responses", ...] = ()
 
-    def at(self, velocity: Float[np.ndarray, "t 2"], growth: PerT) -> Float[np.ndarray, "t sensor"]:
+    def at(
+        self,
+        velocity: Float[np.ndarray, "t 2"],
+        growth: PerT,
+        *,
+        shear: Float[np.ndarray, "t 2"] | None = None,
+    ) -> Float[np.ndarray, "t sensor"]:
         """Answers to currents (east, north) [m/s] at given growths.
 
-        Cubic in speed and direction, quadratic in growth. Speeds above the grid count as its
-        largest. Nothing falls below zero: no line pushes, no sensor leaves the water.
+        Cubic in speed and direction, quadratic in growth, linear in ``shear`` [m/s]. Speeds above
+        the grid count as its largest. Nothing falls below zero: no line pushes, no sensor leaves
+        the water.
         """
+        answers = self.answers_of(velocity, growth)
+        if shear is not None:
+            for slope, part in zip(self.by_shear, shear.T, strict=True):
+                answers += part[:, None] * slope.answers_of(velocity, growth)
+        return np.maximum(answers, 0.0)
+
+    def answers_of(
+        self, velocity: Float[np.ndarray, "t 2"], growth: PerT
+    ) -> Float[np.ndarray, "t sensor"]:
+        """Answers of any sign, without a shear, as of ``at``."""
         from scipy.interpolate import BarycentricInterpolator
 
         speed = np.minimum(np.linalg.norm(velocity, axis=1), self.speed[-1])
         direction = np.arctan2(velocity[:, 0], velocity[:, 1]) % (2.0 * np.pi)
-        weights = BarycentricInterpolator(self.growth, np.eye(len(self.growth)))(growth).T
+        weights = np.ones((1, len(growth)))
+        if len(self.growth) > 1:
+            weights = BarycentricInterpolator(self.growth, np.eye(len(self.growth)))(growth).T
         answers = np.zeros((len(speed), len(self.sensor_names)))
         for weight, level in zip(weights, self.value, strict=True):
             for sensor in range(len(self.sensor_names)):
                 answers[:, sensor] += weight * self._surface(level[..., sensor], speed, direction)
-        return np.maximum(answers, 0.0)
+        return answers
 
     def _surface(
         self, value: Float[np.ndarray, "speed direction"], speed: PerT, direction: PerT
@@ -73,13 +100,15 @@ def true_responses(
     cage: Cage,
     hidden: TruthParameters,
     *,
+    sheared: bool = False,
     store: Path,
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> tuple[Responses, CaseSensor]:
     """Settle the true cage on the grid, and at some currents between for the error.
 
-    ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``store``: folder of the campaigns,
+    ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``sheared``: whether to find how a
+    shear changes the answers, at half the growth. ``store``: folder of the campaigns,
     which are kept: another call with the same cage, hidden parameters and version reads them.
     ``progress``: called as ("virtual field", done, total) in cases.
 
@@ -95,6 +124,8 @@ def true_responses(
     still = SeaState(current_speed=0.0, current_to=0.0)  # the same however grown the net is
     others = Plan.listed((still, *between.seas), name="still and held out")
     runs = [(growth, grid) for growth in _GROWTHS] + [(_HELD_OUT_GROWTH, others)]
+    if sheared:
+        runs += [(_SHEARED_GROWTH, _grid_of_shears()), (_HELD_OUT_GROWTH, _HELD_OUT_SHEARED)]
     total = sum(len(plan) for _, plan in runs)
     by, report, before = hidden.equilibria, progress or no_progress, 0
 
@@ -108,7 +139,7 @@ def true_responses(
         run_share(truth, plan, out, by=by, workers=workers, progress=report_part)
         answers.append(_readings(cage, read_campaign(out)))
         before += len(plan)
-    *moving, settled = answers
+    *moving, settled = answers[: len(_GROWTHS) + 1]
     # cases in the order of the grid's plan; still water looks the same in all directions
     by_speed = np.stack(moving).reshape(len(_GROWTHS), len(_SPEEDS), len(_DIRECTIONS), -1)
     still_water = np.broadcast_to(settled[0], by_speed[:, :1].shape)
@@ -118,10 +149,50 @@ def true_responses(
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),
         value=np.concatenate([still_water, by_speed], axis=1),
+        by_shear=_slopes(cage, answers[len(_GROWTHS) + 1]) if sheared else (),
     )
     velocity = np.array([sea.current_velocity for sea in between.seas])
     interpolated = responses.at(velocity, np.full(len(between), _HELD_OUT_GROWTH))
-    return responses, interpolated - settled[1:]
+    error = interpolated - settled[1:]
+    if sheared:
+        seas = _HELD_OUT_SHEARED.seas
+        mean, change = (
+            np.array([getattr(sea, f"{name}_velocity") for sea in seas])
+            for name in ("current", "shear")
+        )
+        found = responses.at(mean, np.full(len(seas), _HELD_OUT_GROWTH), shear=change)
+        error = np.vstack([error, found - answers[-1]])
+    return responses, error
+
+
+def _grid_of_shears() -> Plan:
+    """Currents with a shear to the north, east, south and west in turn."""
+    currents = product(_SHEARED_SPEEDS, _DIRECTIONS[::2], (0.0, 90.0, 180.0, 270.0))
+    return Plan.listed(
+        (
+            SeaState(current_speed=speed, current_to=to, current_shear=_SHEAR, shear_to=way)
+            for speed, to, way in currents
+        ),
+        name="sheared responses",
+    )
+
+
+def _slopes(cage: Cage, settled: CaseSensor) -> tuple[Responses, Responses]:
+    """What a shear of 1 m/s to the east and to the north adds; in still water nothing."""
+    shape = len(_SHEARED_SPEEDS), len(_DIRECTIONS[::2]), 4, settled.shape[1]
+    north, east, south, west = np.moveaxis(settled.reshape(shape), 2, 0) / (2.0 * _SHEAR)
+    changes = (np.concatenate([0.0 * one[:1], one])[None] for one in (east - west, north - south))
+    first, second = (
+        Responses(
+            sensor_names=cage.sensor_names,
+            speed=np.array([0.0, *_SHEARED_SPEEDS]),
+            direction=np.deg2rad(_DIRECTIONS[::2]),
+            growth=np.array([_SHEARED_GROWTH]),
+            value=one,
+        )
+        for one in changes
+    )
+    return first, second
 
 
 def _readings(cage: Cage, campaign: CampaignRecord) -> CaseSensor:

@@ -196,8 +196,7 @@ def true_weather(
 
     Raises InputError: fewer than two usable currents or waves.
     """
-    # the word keeps these streams apart from those of others who have the same seed
-    water, deep, surface = np.random.default_rng([seed, *b"weather"]).spawn(3)
+    water, deep, surface = water_chance(seed)
     span = float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s"))
     seconds = np.arange(math.ceil(span / every_s) + 1) * every_s
     current = Even(step=every_s, values=current_at_cage(buoy, seconds, hidden=hidden, rng=water))
@@ -222,6 +221,12 @@ def true_weather(
         profile=hidden.profile,
         fouling=hidden.fouling,
     )
+
+
+def water_chance(seed: int) -> list[np.random.Generator]:
+    """Chance of the buoy's error and eddies, of the profile, and of the waves."""
+    # the word keeps these streams apart from those of others who have the same seed
+    return np.random.default_rng([seed, *b"weather"]).spawn(3)
 
 
 def shear(
@@ -275,16 +280,9 @@ def current_at_cage(
     ``buoy``: its unusable rows are bridged by its neighbours. ``seconds``: since the buoy's first
     time, in even steps [s].
     """
-    there, reported = _buoy_series(buoy)
-    speed = np.linalg.norm(reported, axis=1)
-    noise = hidden.buoy
-    at_buoy = towards(
-        np.maximum(speed - rng.normal(scale=noise.speed_sd_m_s, size=len(speed)), 0.0),
-        compass(reported) - rng.normal(scale=noise.direction_sd_deg, size=len(speed)),
-    )
+    there, at_buoy = _true_at_buoy(buoy, hidden=hidden, rng=rng)
     way = hidden.current
-    now = _between(seconds, there, at_buoy)
-    lag = np.minimum(way.distance_m / np.maximum(np.linalg.norm(now, axis=1), 1e-6), way.lag_most_s)
+    lag = _lag(_between(seconds, there, at_buoy), hidden)
     arrived = _between(seconds - lag, there, at_buoy)
     step, sd, memory = float(seconds[1] - seconds[0]), way.residual_sd_m_s, way.residual_memory_s
     eddies = wandering(rng, len(seconds), sd=sd, step_s=step, memory_s=memory)
@@ -293,6 +291,34 @@ def current_at_cage(
     factor = _swing(to, way.factor_least, way.factor_most, way.factor_most_to_deg)
     turn = _swing(to, way.turn_least_deg, way.turn_most_deg, way.turn_most_to_deg)
     return towards(np.linalg.norm(arrived, axis=1) * factor, to + turn) + eddies
+
+
+def current_at_buoy(
+    buoy: Record, seconds: PerT, *, hidden: TruthParameters, rng: np.random.Generator
+) -> tuple[Float[np.ndarray, "t 2"], PerT]:
+    """The true current at the buoy [m/s], and when that water is at the cage [s].
+
+    ``buoy``, ``seconds``, ``rng``: as of ``current_at_cage``, from the same state of chance.
+    """
+    now = _between(seconds, *_true_at_buoy(buoy, hidden=hidden, rng=rng))
+    return now, seconds + _lag(now, hidden)
+
+
+def _true_at_buoy(
+    buoy: Record, *, hidden: TruthParameters, rng: np.random.Generator
+) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
+    there, reported = _buoy_series(buoy)
+    speed = np.linalg.norm(reported, axis=1)
+    noise = hidden.buoy
+    return there, towards(
+        np.maximum(speed - rng.normal(scale=noise.speed_sd_m_s, size=len(speed)), 0.0),
+        compass(reported) - rng.normal(scale=noise.direction_sd_deg, size=len(speed)),
+    )
+
+
+def _lag(current: Float[np.ndarray, "t 2"], hidden: TruthParameters) -> PerT:
+    way, speed = hidden.current, np.linalg.norm(current, axis=1)
+    return np.minimum(way.distance_m / np.maximum(speed, 1e-6), way.lag_most_s)
 
 
 def _buoy_series(buoy: Record) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:

@@ -35,9 +35,10 @@ typedef struct {
 } assembly;
 
 typedef struct {
-    const double *direction; /* [3][lane] */
+    const double *direction; /* [panel][3][lane] */
     const double *panel;     /* [panel][6][lane]: pressure, a, b, h, l, e of SteadyFlow */
-    const double *pipe_pressure; /* [lane] */
+    const double *pipe_direction; /* [cylinder][3][lane] */
+    const double *pipe_pressure;  /* [cylinder][lane] */
 } flow;
 
 /* Bars of spring rate `rate`, loaded with `carried`: carried + rate (stretch − carried/k).
@@ -122,8 +123,8 @@ static inline void wet_share(const assembly *s, int p, const vec *restrict x, do
 
 static void add_panels(const assembly *s, const flow *w, const vec *restrict x, vec *restrict f)
 {
-    const double *restrict u = w->direction;
     for (int p = 0; p < s->panels; p++) {
+        const double *restrict u = w->direction + 3 * LANES * p;
         const int *n = s->panel_corners + 4 * p;
         const double *share = s->panel_share + 4 * p;
         const double *restrict law = w->panel + 6 * LANES * p;
@@ -169,8 +170,9 @@ static void add_panels(const assembly *s, const flow *w, const vec *restrict x, 
 
 static void add_cylinders(const assembly *s, const flow *w, const vec *restrict x, vec *restrict f)
 {
-    const double *restrict u = w->direction, *restrict pressure = w->pipe_pressure;
     for (int b = 0; b < s->cylinders; b++) {
+        const double *restrict u = w->pipe_direction + 3 * LANES * b;
+        const double *restrict pressure = w->pipe_pressure + LANES * b;
         const int i = s->cylinder_ends[2 * b], j = s->cylinder_ends[2 * b + 1];
         const double width = 0.5 * s->cylinder_width[b];
         EACH_LANE {

@@ -113,7 +113,7 @@ const layout_row seacage_layout_assembly[] = {
 
 #define FIELD(name) LAYOUT_FIELD(flow, name)
 const layout_row seacage_layout_flow[] = {
-    FIELD(direction), FIELD(panel), FIELD(pipe_pressure), LAYOUT_END(flow),
+    FIELD(direction), FIELD(panel), FIELD(pipe_direction), FIELD(pipe_pressure), LAYOUT_END(flow),
 };
 #undef FIELD
 

@@ -208,7 +208,13 @@ class Kernel:
             [flow.pressure, flow.constant, flow.slope, flow.third, flow.lift, flow.lift_second],
             axis=-1,
         )
-        arrays = {"direction": flow.direction, "panel": panel, "pipe_pressure": flow.pipe_pressure}
+        pipes = (len(panel), len(assembly.cylinders.drag_width))
+        arrays = {
+            "direction": np.broadcast_to(flow.at_panels, (*panel.shape[:2], 3)),
+            "panel": panel,
+            "pipe_direction": np.broadcast_to(flow.at_pipes, (*pipes, 3)),
+            "pipe_pressure": np.broadcast_to(flow.pipe_pressure, pipes),
+        }
         structure = _structs.AssemblyStruct.cast(
             bar_stiffness=assembly.bars.stiffness,
             cylinder_width=assembly.cylinders.drag_width,

@@ -171,7 +171,7 @@ static void panel_slopes(const assembly *s, const flow *f, int q, const vec *res
         for (int a = 0; a < 3; a++) {
             r[a] = x[n[2]][a][k] - x[n[0]][a][k];
             t[a] = x[n[3]][a][k] - x[n[1]][a][k];
-            u[a] = f->direction[a * LANES + k];
+            u[a] = f->direction[(3 * q + a) * LANES + k];
         }
         v[0] = 0.5 * (r[1] * t[2] - r[2] * t[1]);
         v[1] = 0.5 * (r[2] * t[0] - r[0] * t[2]);
@@ -277,8 +277,9 @@ static void linearise_panels(const assembly *s, const flow *f, const pattern *p,
 static void linearise_cylinders(const assembly *s, const flow *f, const pattern *p,
                                 const vec *restrict x, bench *w)
 {
-    const double *restrict u = f->direction;
     for (int q = 0; q < s->cylinders; q++) {
+        const double *restrict u = f->pipe_direction + 3 * LANES * q;
+        const double *restrict pressure = f->pipe_pressure + LANES * q;
         const int i = s->cylinder_ends[2 * q], j = s->cylinder_ends[2 * q + 1];
         const double width = 0.5 * s->cylinder_width[q];
         const int32_t *to = p->cylinders + 4 * q;
@@ -298,7 +299,7 @@ static void linearise_cylinders(const assembly *s, const flow *f, const pattern 
                 v[a] = u[a * LANES + k] - ut * t[a];
                 vv += v[a] * v[a];
             }
-            const double speed = sqrt(vv), load = f->pipe_pressure[k] * width;
+            const double speed = sqrt(vv), load = pressure[k] * width;
             const double slow = speed > 1e-9 ? ut / speed : 0.0;
             for (int a = 0; a < 3; a++)
                 for (int c = 0; c < 3; c++)

@@ -116,7 +116,7 @@ AssemblyStruct = _struct(
     (DOUBLES, "spring_place spring_stiffness spring_preload ground_stiffness"),
     (ctypes.c_double, "ground_level"),
 )
-FlowStruct = _struct("flow", (DOUBLES, "direction panel pipe_pressure"))
+FlowStruct = _struct("flow", (DOUBLES, "direction panel pipe_direction pipe_pressure"))
 RelaxationStruct = _struct(
     "relaxation",
     (DOUBLES, "inverse_mass soft_rate true_rate"),

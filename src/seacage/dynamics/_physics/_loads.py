@@ -31,7 +31,8 @@ class SteadyFlow(Rows):
     C_D = max(0, a + b c + h cos3θ) and C_L = l sin2θ (1 + e cos2θ), with c = cosθ.
     """
 
-    direction: Float[np.ndarray, "case 3"]  # unit vector of the current; zero in still water [-]
+    # Unit vector of the current, or of its mean over depth; zero in still water [-]
+    direction: Float[np.ndarray, "case 3"]
     # ½ ρ s |u| on each panel: |u| its current behind the wake, s the same or, with waves, the
     # larger root-mean-square speed [Pa]
     pressure: Float[np.ndarray, "case panel"]
@@ -42,7 +43,21 @@ class SteadyFlow(Rows):
     # l and e of each panel's lift [-]
     lift: Float[np.ndarray, "case panel"]
     lift_second: Float[np.ndarray, "case panel"]
-    pipe_pressure: Float[np.ndarray, " case"]  # ½ ρ |U|² on the pipes; 0 leaves their drag out [Pa]
+    # ½ ρ |U|² on the pipes, or on each; 0 leaves their drag out [Pa]
+    pipe_pressure: Float[np.ndarray, "case #pipe"]
+    # Unit vectors at each panel and pipe where the current changes with depth [-]
+    panel_direction: Float[np.ndarray, "case panel 3"] | None = None
+    pipe_direction: Float[np.ndarray, "case pipe 3"] | None = None
+
+    @property
+    def at_panels(self) -> Float[np.ndarray, "case #panel 3"]:
+        """Unit vector of the current at each panel [-]."""
+        return self.direction[:, None] if self.panel_direction is None else self.panel_direction
+
+    @property
+    def at_pipes(self) -> Float[np.ndarray, "case #pipe 3"]:
+        """Unit vector of the current at each pipe [-]."""
+        return self.direction[:, None] if self.pipe_direction is None else self.pipe_direction
 
 
 def nodal_force(assembly: assemblies.Assembly, flow: SteadyFlow, position: Nodal) -> Nodal:
@@ -126,7 +141,7 @@ def panel_load(
     The normal is turned to the flow's side, so that it does not matter which face the
     water meets. What is above still water is dry.
     """
-    load = screen_load(panels, position, flow.direction[:, None], flow)
+    load = screen_load(panels, position, flow.at_panels, flow)
     return wet_share(panels, position)[..., None] * load
 
 
@@ -194,10 +209,10 @@ def screen_load(
 def cylinder_force(cylinders: assemblies.Cylinders, flow: SteadyFlow, position: Nodal) -> Nodal:
     """Cross-flow drag on the pipes [N]; the cross-flow principle, Hoerner (1965)."""
     tangent, length = assemblies.direction(position, cylinders.ends)
-    u = flow.direction[:, None]
+    u = flow.at_pipes
     across = u - np.sum(u * tangent, axis=-1, keepdims=True) * tangent
     speed = np.linalg.norm(across, axis=-1, keepdims=True)
-    pressure = flow.pipe_pressure[:, None, None]
+    pressure = flow.pipe_pressure[..., None]
     load = pressure * cylinders.drag_width[:, None] * length[..., None] * speed * across
     return _gather(position, cylinders.ends, np.stack([load, load], axis=2) / 2.0)
 

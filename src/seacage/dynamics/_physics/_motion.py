@@ -181,7 +181,7 @@ def net_load_under_water(
     flow = SteadyFlow(
         direction=unit[:, 0],
         pressure=DYNAMIC * speed**2,
-        pipe_pressure=np.zeros(len(speed)),
+        pipe_pressure=np.zeros((len(speed), 1)),
         **law.screen(panels).terms(speed),
     )
     return law.factor[..., None] * screen_load(panels, position, unit, flow)

@@ -8,7 +8,14 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.ocean import CurrentProfile, SeaState, Waves, sample_waves
+from seacage.ocean import (
+    MODES_DEPTH,
+    CurrentProfile,
+    SeaState,
+    Waves,
+    over_depth,
+    sample_waves,
+)
 
 # Components of the waves of a case at most: the kernel keeps their phases on a thread's stack
 MOST_COMPONENTS = 1000
@@ -111,6 +118,16 @@ def ocean_of(
     seas: list[SeaState], waves: list[Waves], profile: CurrentProfile | None, depth: float
 ) -> Ocean:
     surface = np.array([sea.current_velocity for sea in seas])
+    shear = np.array([sea.shear_velocity for sea in seas])
+    if shear.any():
+        if profile is not None:
+            raise InputError(
+                "simulate: the sea has a shear, and current_profile says how the current changes "
+                "with depth. Give one of them."
+            )
+        levels = np.array([0.0, MODES_DEPTH])
+        current = over_depth(surface, shear, levels)
+        return Ocean(waves=waves, current=current, level_z=-levels, depth=depth)
     current = surface[:, None] if profile is None else profile.velocity(surface)
     level_z = np.zeros(1) if profile is None else -np.array(profile.depth)
     return Ocean(waves=waves, current=current, level_z=level_z, depth=depth)

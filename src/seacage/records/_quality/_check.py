@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Int
 
 from seacage.conventions import Flag
-from seacage.records._quality._limits import DEFAULT_LIMITS, GROUPS, Limits
+from seacage.records._quality._limits import DEFAULT_LIMITS, GROUPS, Limits, groups_of
 from seacage.records._quality._prefilter import Columns, candidate_rows
 from seacage.records._quality._tests import ATTENUATED, Anchor, Finding, evaluate
 from seacage.records._record import Record
@@ -80,16 +80,18 @@ def check_sample(
     anchors = dict(state.anchors)
     findings: list[Finding] = []
     amendments: list[Amendment] = []
-    for group, keys in GROUPS.items():
-        values = {key: sample.values[key] for key in keys if key in sample.values}
-        if values:
-            before = anchors.get(group)
-            evaluation = evaluate(group, before, time, values, limits)
-            findings += evaluation.findings
-            if before is not None:
-                amendments += _amendments(sample.stream, before, evaluation.of_the_last)
-            if evaluation.anchor is not None:
-                anchors[group] = evaluation.anchor
+    for group, keys in groups_of(sample.values):
+        kind, plain = _plain(group, keys)
+        values = {plain[key]: sample.values[key] for key in keys}
+        before = anchors.get(group)
+        evaluation = evaluate(kind, before, time, values, limits)
+        findings += _by_key(evaluation.findings, plain)
+        if before is not None:
+            own = {key: before.values[name] for key, name in plain.items() if name in before.values}
+            of_the_last = _by_key(evaluation.of_the_last, plain)
+            amendments += _amendments(sample.stream, before.time, own, of_the_last)
+        if evaluation.anchor is not None:
+            anchors[group] = evaluation.anchor
     flags = dict.fromkeys(sample.values, Flag.GOOD)
     for finding in findings:
         flags[finding.key] = max(flags[finding.key], finding.flag)
@@ -153,12 +155,15 @@ def verdicts_on(record: Record, limits: Limits = DEFAULT_LIMITS) -> tuple[Verdic
     """Return what each test finds in a record, in the order of first finds."""
     time = record.time.astype(np.int64)
     found: dict[tuple[str, str, Flag], tuple[list[int], str]] = {}
-    for group, keys in GROUPS.items():
-        columns = {key: record.values[key] for key in keys if key in record.values}
-        for row, finding, values in _findings(group, time, columns, limits):
+    for group, keys in groups_of(record.values):
+        kind, plain = _plain(group, keys)
+        columns = {plain[key]: record.values[key] for key in keys}
+        for row, one, values in _findings(kind, time, columns, limits):
+            (finding,) = _by_key([one], plain)
             name = (finding.key, finding.test, finding.flag)
             if name not in found:
-                found[name] = ([], _sentence(record.stream, values, finding))
+                own = {key: values[short] for key, short in plain.items() if short in values}
+                found[name] = ([], _sentence(record.stream, own, finding))
             found[name][0].append(row)
     return tuple(
         Verdict(key=key, test=test, flag=flag, rows=np.unique(rows), example=example)
@@ -216,10 +221,25 @@ def _stretch_findings(
             last = row
 
 
-def _amendments(stream: str, anchor: Anchor, found: Sequence[Finding]) -> Iterator[Amendment]:
-    t = moment(anchor.time)
+def _plain(group: str, keys: Sequence[str]) -> tuple[str, dict[str, str]]:
+    """Group whose limits count, and plain names of keys: those of a current at a depth."""
+    if group in GROUPS:
+        return group, {key: key for key in GROUPS[group]}
+    return "current", dict(zip(keys, GROUPS["current"], strict=True))
+
+
+def _by_key(findings: Sequence[Finding], plain: Mapping[str, str]) -> list[Finding]:
+    """Findings about plain names, by the keys that these stand for."""
+    keys = {name: key for key, name in plain.items()}
+    return [one._replace(key=keys[one.key]) for one in findings]
+
+
+def _amendments(
+    stream: str, time: int, values: Mapping[str, float], found: Sequence[Finding]
+) -> Iterator[Amendment]:
+    t = moment(time)
     for one in found:
-        remark = _sentence(stream, anchor.values, one)
+        remark = _sentence(stream, values, one)
         yield Amendment(stream=stream, t=t, key=one.key, flag=one.flag, remark=remark)
 
 

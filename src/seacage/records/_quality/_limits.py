@@ -8,10 +8,11 @@ its own in a file like it.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
 from seacage.conventions import read_packaged_table
+from seacage.records._keys import bin_keys, current_bins
 
 GROUPS: Mapping[str, tuple[str, ...]] = {
     "current": ("current_speed_m_s", "current_to_deg"),
@@ -20,6 +21,19 @@ GROUPS: Mapping[str, tuple[str, ...]] = {
     "depth": ("depth_m",),
 }
 """Quantities that one instrument measures at once; they stand still or jump together."""
+
+
+def groups_of(names: Iterable[str]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Groups of some keys, those of ``GROUPS`` first, with the keys that are there.
+
+    The current at each depth is a group of its own, ``current at 5 m``.
+    """
+    there = set(names)
+    for group, keys in GROUPS.items():
+        if known := tuple(key for key in keys if key in there):
+            yield group, known
+    for depth in current_bins(there):
+        yield f"current at {depth:g} m", bin_keys(depth)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

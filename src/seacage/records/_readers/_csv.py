@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
-from seacage.records._keys import KEYS
+from seacage.records._keys import key_of
 from seacage.records._readers._column_map import (
     LEAD,
     Column,
@@ -140,7 +140,7 @@ def recognise(table: Table) -> ColumnMap:
     Raises RecordError: none fits, or more than one.
     """
     keys = [name for name in table.header if name != "time"]
-    if "time" in table.header and KEYS.keys() >= set(keys):
+    if "time" in table.header and all(map(key_of, keys)):
         return ColumnMap.of_keys(keys)
     maps = shipped_maps()
     known = frozenset(table.header)

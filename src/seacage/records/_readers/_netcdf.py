@@ -11,7 +11,7 @@ import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError, read_bytes
 from seacage.records import _netcdf_file
-from seacage.records._keys import KEYS
+from seacage.records._keys import key_of
 from seacage.records._record import Record
 
 if TYPE_CHECKING:
@@ -91,7 +91,8 @@ def _dataset(record: Record) -> "xarray.Dataset":
 
 
 def _value_attributes(key: str) -> dict[str, str]:
-    known = KEYS[key]
+    known = key_of(key)
+    assert known is not None  # the record refused it
     attributes = {
         "units": known.cf_unit,
         "long_name": known.long_name,
@@ -116,8 +117,8 @@ def _record(dataset: "xarray.Dataset") -> Record:
     keys = [str(name) for name in dataset.data_vars if not str(name).endswith(_FLAG)]
     for key in keys:
         units = dataset[key].attrs.get("units")
-        if key in KEYS and units != KEYS[key].cf_unit:
-            raise ValueError(f"{key} is in {units!r}, not in {KEYS[key].cf_unit!r}")
+        if (known := key_of(key)) is not None and units != known.cf_unit:
+            raise ValueError(f"{key} is in {units!r}, not in {known.cf_unit!r}")
     comment = str(attributes["comment"])
     return Record(
         stream=str(attributes["stream"]),

@@ -17,6 +17,8 @@ SEA_COLUMNS = {
     "hs_m": "hs",
     "tp_s": "tp",
     "wave_from_deg": "wave_from",
+    "current_shear_m_s": "current_shear",
+    "shear_to_deg": "shear_to",
 }
 """Names of ``SeaState`` by column."""
 
@@ -36,7 +38,7 @@ def read_sea_states(path: Path) -> tuple[SeaState, ...]:
 
 
 def sea_states(table: Table, *, assumed: bool = True) -> tuple[SeaState, ...]:
-    """The sea state of each row; an empty hs_m or wave_from_deg is 0, an empty tp_s 5 sqrt(hs_m).
+    """The sea state of each row; an empty tp_s is 5 sqrt(hs_m), any other empty cell 0.
 
     ``assumed``: whether waves may lack numbers that are taken so; else only where hs_m is 0, or
     where no column is of waves.

@@ -36,6 +36,7 @@ def virtual(
     waves: _options.InFile = None,
     calm: Annotated[bool, typer.Option("--calm")] = False,
     one_in: Annotated[int, typer.Option(min=1)] = 1,
+    profile: Literal["buoy", "cage"] | None = None,
     event: list[str] | None = None,
     events: _options.InFile = None,
     seed: _options.Seed = 0,
@@ -56,7 +57,7 @@ def virtual(
     Example:
         seacage field virtual field --days 1.5 --seed 1
         seacage field virtual field --record buoy.csv --waves nora10.csv --one-in 8
-        seacage field virtual field --method settle --truth 7 --water coastal
+        seacage field virtual field --method settle --truth 7 --water coastal --profile cage
         seacage field virtual field --event "net-hole ring-3/spoke-24 2020-02-01T12:00Z"
 
     Options:
@@ -69,6 +70,7 @@ def virtual(
             the buoy's own, else they are generated.
         calm: No waves at all.
         one_in: Simulate one hour in so many, and those of the shackles.
+        profile: Where an ADCP measures the current at six depths, which the buoy's stream carries.
         event: What goes wrong, as "bridle-cut bridle-8 2020-02-01T12:00Z".
         events: A TOML file of events.
         seed: Of weather, noise and outages.
@@ -101,10 +103,11 @@ def virtual(
         )
     else:
         options |= {"method": method, "kept": out / "responses"}
-    options |= {"events": _events(event, events)}
+    options |= {"events": _events(event, events), "profile": profile}
     with progress_bar() as progress:
         subject, options["progress"] = _options.read_cage(cage), progress
         if share is not None:
+            del options["profile"]  # adds to the record alone, when it is put together
             virtual_field_share(subject, buoy, share=_options.read_share(share), **options)
             report({"share": share}, rows=[("Simulated", f"share {share}")])
             return

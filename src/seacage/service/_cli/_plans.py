@@ -28,12 +28,13 @@ class PlanOptions:
 
     Options:
         plan: paper: its ranges; default: also other periods than 5 √Hs; current: no waves; loads:
-            periods up to 18 s, for loads in waves; or the path of a plan that was written, ending
-            in .json.
+            periods up to 18 s, for loads in waves; profile: no waves, currents that change with
+            depth; or the path of a plan that was written, ending in .json.
         grid: Instead of a plan every combination, e.g. hs_m=0,1,2 or, 11 values from 0 to 1,
             current_speed_m_s=0:1:11.
         listed: Instead of a plan a CSV file of sea states: current_speed_m_s, current_to_deg and,
-            if there are waves, hs_m, tp_s, wave_from_deg.
+            if there are waves, hs_m, tp_s, wave_from_deg; of a current that changes with depth
+            current_shear_m_s and shear_to_deg.
         cases: Sea states to draw of a plan. [default: 1000]
         duration: Of each sea state, s. [default: 1800, or as written]
         seed: Of the draw and of the waves. [default: 0, or as written]

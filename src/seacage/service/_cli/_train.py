@@ -11,8 +11,14 @@ from seacage.service._cli._options import InFolder, Seed, read_cage
 
 if TYPE_CHECKING:
     from seacage.cage import Cage
-    from seacage.records import CampaignRecord
+    from seacage.records import CampaignRecord, FieldRecord
     from seacage.twin import Twin
+
+_INPUTS: "dict[str, tuple[Literal['current', 'waves', 'profile'], ...]]" = {
+    "current": ("current",),
+    "current,waves": ("current", "waves"),
+    "current,profile": ("current", "profile"),
+}
 
 
 @guard
@@ -26,7 +32,7 @@ def train(
     ] = None,
     out: Annotated[Path, typer.Option(file_okay=False)],
     cage: str | None = None,
-    inputs: Literal["current", "current,waves"] = "current",
+    inputs: Literal["current", "current,waves", "current,profile"] | None = None,
     points: Annotated[int, typer.Option(min=20, max=5000)] = 300,
     choice: Literal["spread", "paper"] = "spread",
     days: Annotated[float, typer.Option(min=0.1)] = 25.0,
@@ -51,7 +57,8 @@ def train(
             --campaign: what would be left if a line parted is learned too. Again for each.
         out: Folder of the twin.
         cage: Where sensors have moved: a TOML file. [default: as simulated]
-        inputs: What the twin is asked with.
+        inputs: What the twin is asked with. [default: the current, with its profile where
+            simulations and field have one; the base's]
         points: Readings that each sensor teaches with.
         choice: spread over currents and time, or the paper's few minutes or seconds.
         days: Longest that a sensor teaches; the rest can judge.
@@ -64,8 +71,9 @@ def train(
     from seacage.twin import train as trained
 
     drawn, simulated, begun = _level_one(campaign, base)
+    record = FieldRecord.read(field) if field else None
     training = Training(
-        inputs=("current", "waves") if inputs == "current,waves" else ("current",),
+        inputs=_INPUTS[inputs] if inputs else _usual_inputs(simulated, begun, record),
         high_fidelity_points=points,
         choice=choice,
         days=days,
@@ -77,7 +85,7 @@ def train(
             twin = trained(
                 read_cage(cage) if cage else drawn,
                 simulated,
-                FieldRecord.read(field) if field else None,
+                record,
                 parted=[read_campaign(store) for store in _stores(parted or [])],
                 base=begun,
                 training=training,
@@ -116,6 +124,19 @@ def train(
             *(("Left out", sentence) for sentence in left_out),
         ],
     )
+
+
+def _usual_inputs(
+    campaign: "CampaignRecord | None", base: "Twin | None", field: "FieldRecord | None"
+) -> "tuple[Literal['current', 'waves', 'profile'], ...]":
+    """Inputs that are not chosen: the base's, or the current with its profile if all have one."""
+    from seacage.records import current_bins
+
+    if base is not None or campaign is None:
+        return base.models.inputs if base else ("current",)
+    there = any(sea.current_shear for sea in campaign.seas)
+    seen = field is None or len(current_bins(field.buoy.values)) > 1
+    return _INPUTS["current,profile" if there and seen else "current"]
 
 
 def _travel_time(twin: "Twin") -> str:

@@ -1,6 +1,7 @@
 """What a cage would do in other water: the twin asked beside the live loop."""
 
 import math
+from dataclasses import replace
 
 from fastapi import APIRouter, Response
 
@@ -37,7 +38,8 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
     counted: null is what the twin knows nothing of.
     """
     sea = SeaState(**{name: getattr(body, key) for key, name in SEA_COLUMNS.items()})
-    water, past, now = Metocean.of(sea), live.past, live.clock.now()
+    # At one depth, as a buoy's, where the twin takes a profile
+    water, past, now = replace(Metocean.of(sea), profile=None), live.past, live.clock.now()
     twin = past.twin
     answered = Answered(t=now, answer=twin.predict(water), metocean=water, input_age_s=0.0)
     state = state_of(live.name, twin, answered, twin.start()).model_copy(update={"twin": past.id})
@@ -56,7 +58,7 @@ def get_what_if_parted(live: Live, at: At = None) -> WhatIfParted:
 
 def training_domain_of(twin: Twin) -> Learned:
     """Return which inputs a twin was trained with, and up to where."""
-    keys = [key for name in twin.models.inputs for key in _KEYS[name]]
+    keys = [key for name in twin.models.inputs for key in _KEYS.get(name, ())]
     most = dict(zip((strength for strength, _ in _KEYS.values()), twin.models.edge, strict=True))
     if twin.emulator is not None:
         hs, log_tp = twin.emulator.domain.upper[1:3].tolist()

@@ -9,7 +9,7 @@ import numpy as np
 import structlog
 
 from seacage.conventions import Flag, InputError, ModelError
-from seacage.records import Amendment, Record, Sample, instant
+from seacage.records import Amendment, Record, Sample, bin_keys, current_bins, instant
 from seacage.service._live._clock import floor_time
 from seacage.service._live._twin_shelf import TwinShelf, check_fit
 from seacage.service._schemas._samples import BUOY_KEYS
@@ -188,11 +188,13 @@ class Past:
         counts.
         """
         kept = list({sample.t: sample for sample in samples}.values())
-        flags = {key: [one.flags.get(key, Flag.MISSING) for one in kept] for key in BUOY_KEYS}
+        bins = current_bins({key for one in kept for key in one.values})
+        keys = (*BUOY_KEYS, *(key for depth in bins for key in bin_keys(depth)))
+        flags = {key: [one.flags.get(key, Flag.MISSING) for one in kept] for key in keys}
         return Record(
             stream=self.twin.buoy,
             time=np.array([instant(sample.t) for sample in kept], dtype="datetime64[us]"),
-            values={k: np.array([one.values.get(k, np.nan) for one in kept]) for k in BUOY_KEYS},
+            values={key: np.array([one.values.get(key, np.nan) for one in kept]) for key in keys},
             flags={key: np.array(flag, dtype=np.uint8) for key, flag in flags.items()},
             origin=self.twin.origin,
         )

@@ -26,7 +26,7 @@ class _Settled(AbstractRequest):
 class _Observed(AbstractRequest):
     t: Annotated[Time, Field(strict=False)]
     seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
-    values: Annotated[dict[str, object], Field(min_length=1, max_length=16)]
+    values: Annotated[dict[str, object], Field(min_length=1, max_length=128)]
 
 
 _OBSERVED = TypeAdapter(Annotated[list[_Observed], Field(min_length=1, max_length=BATCH_LIMIT)])

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, JsonValue, TypeAdapter, ValidationE
 from pydantic.config import JsonDict
 
 from seacage.conventions import InputError
-from seacage.records import NO_MEAN_PERIOD, Sample, is_mean_period
+from seacage.records import NO_MEAN_PERIOD, Sample, is_mean_period, plain_key
 from seacage.service._schemas._base import AbstractAnswer, AbstractRequest, Name, Time
 
 _LARGEST = 1.7e308
@@ -31,7 +31,7 @@ class SampleIn(AbstractRequest):
     stream: Name
     t: Annotated[JsonValue, Field(description="Of the source, UTC, as text.", json_schema_extra=_T)]
     seq: Annotated[int | None, Field(ge=0, lt=2**63)] = None
-    values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=16)]
+    values: Annotated[dict[str, JsonValue], Field(min_length=1, max_length=128)]
 
 
 class SamplesIn(AbstractRequest):
@@ -140,7 +140,7 @@ def _sample(one: SampleIn, streams: Mapping[str, tuple[str, ...]], until: dateti
     if one.stream not in streams:
         raise InputError(f"No stream is called {one.stream!r}. There are {', '.join(streams)}.")
     for key in one.values:
-        if key not in streams[one.stream]:
+        if plain_key(key) not in streams[one.stream]:  # of a buoy, at any depth
             carried = ", ".join(streams[one.stream])
             hint = f" {NO_MEAN_PERIOD}" if is_mean_period(key) and "tp_s" in carried else ""
             raise InputError(f"{one.stream} has no quantity {key!r}. It carries {carried}.{hint}")

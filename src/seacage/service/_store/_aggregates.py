@@ -86,7 +86,7 @@ def _usable(readings: str) -> Iterator[tuple[str, float]]:
         if flag not in _USELESS and math.isfinite(value)
     }
     for key, value in good.items():
-        if key not in _DIRECTIONS:
+        if key in QUANTITIES:  # none at a depth
             yield key, value
     if _SPEED in good and _TO in good:
         angle = math.radians(good[_TO])

@@ -221,7 +221,8 @@ def encode_parquet(cage: str, stream: str, samples: Sequence[Sample]) -> bytes:
         ),
         "seq": pa.array([one.seq for one in samples], pa.int64()),
     }
-    for key in KEYS:
+    bins = {key for one in samples for key in one.values} - KEYS.keys()
+    for key in (*KEYS, *sorted(bins)):
         if any(key in one.values for one in samples):
             values = [one.values.get(key) for one in samples]
             flags = [int(one.flags[key]) if key in one.flags else None for one in samples]
@@ -245,7 +246,7 @@ def decode_parquet(content: bytes, stream: str, bounds: Bounds) -> list[Sample]:
     if bounds.newest:
         first = max(first, last - bounds.limit)
     chosen: Any = table.slice(first, min(last - first, bounds.limit))
-    keys = [key for key in KEYS if key in chosen.column_names]
+    keys = [key for key in chosen.column_names if f"{key}_flag" in chosen.column_names]
     columns = [(key, chosen[key].to_pylist(), chosen[f"{key}_flag"].to_pylist()) for key in keys]
     rows = zip(
         times[first:], chosen["seq"].to_pylist(), chosen["remarks"].to_pylist(), strict=False

@@ -19,12 +19,12 @@ from pydantic import TypeAdapter
 from seacage.conventions import Flag
 from seacage.records import (
     AHEAD,
-    GROUPS,
     Amendment,
     Limits,
     QualityState,
     Sample,
     check_sample,
+    groups_of,
     is_withdrawn,
     withdrawn,
 )
@@ -363,7 +363,10 @@ class _Stream:
         if not last:
             return Memory()
         seen = {key for one in last for key in one.values}
-        steady = [limits.steadiness[of] for of, keys in GROUPS.items() if not seen.isdisjoint(keys)]
+        steady = [
+            limits.steadiness[of]
+            for of in {group.partition(" ")[0] for group, _ in groups_of(seen)}
+        ]
         times = (t for one in steady for t in (one.attenuated_s, one.flat_fail_s, one.gap_s))
         reach_s = max([0.0, *filter(isfinite, times)])
         reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)

@@ -20,6 +20,7 @@ from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Input
 from seacage.twin._models import Models
 from seacage.twin._parted import PartedKind, PartedLines
+from seacage.twin._profiles import Profiles
 from seacage.twin._provenance import Provenance
 from seacage.twin._settings import FaultDetectorSettings, StreamTimeouts
 from seacage.twin._travel_time import TravelTime
@@ -27,11 +28,12 @@ from seacage.twin._travel_time import TravelTime
 FORMAT = "seacage twin"
 VERSION = 2
 # With what version 0.1.0 would ignore, a fault detector of other settings, a discrepancy of the
-# net's level 2, or a travel time of the current: it refuses these
+# net's level 2, a travel time of the current, or profiles of it: it refuses these
 TUNED_VERSION = 3
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
 PARTED = "parted/"  # before the line's name, in the names of what is left without it
+PROFILES = "profiles:draws"
 DISCREPANCY = "discrepancy:"  # before the names of the arrays of the shapes' errors
 _ERRORS = ("current_velocity", "ring", "rest")
 # Fields that the header has as they are
@@ -103,7 +105,7 @@ def to_parts(
     from pydantic import TypeAdapter
 
     usual = FaultDetectorSettings(), TravelTime()
-    tuned = (others["fault_detector"], others["travel_time"]) != usual
+    tuned = (others["fault_detector"], others["travel_time"]) != usual or models.profiles
     header = Header(
         format=FORMAT,
         version=TUNED_VERSION if tuned or (discrepancy and discrepancy.level > 1) else VERSION,
@@ -145,6 +147,8 @@ def to_parts(
     if models.parted is not None and models.parted.symmetry is not None:
         turns = models.parted.symmetry.to_arrays()
         arrays |= {f"{PARTED}:{key}": values for key, values in turns.items()}
+    if models.profiles is not None:
+        arrays[PROFILES] = models.profiles.draws
     if discrepancy is not None:
         settings["discrepancy"] = {"origin": str(discrepancy.origin), "level": discrepancy.level}
         arrays |= {f"{DISCREPANCY}{key}": getattr(discrepancy, key) for key in _ERRORS}
@@ -267,6 +271,7 @@ def _models(
         )
         if header.parted
         else None,
+        profiles=Profiles(draws=arrays[PROFILES]) if PROFILES in arrays else None,
         **{name: getattr(header, name) for name in _OF_MODELS},
     )
     for sensor, gain in header.gains.items():

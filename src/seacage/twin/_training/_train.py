@@ -12,7 +12,8 @@ from jaxtyping import Float
 
 from seacage.cage import Cage
 from seacage.conventions import InputError, NonsenseError, Origin, Progress, no_progress
-from seacage.records import CampaignRecord, FieldRecord, moment
+from seacage.ocean import over_depth
+from seacage.records import CampaignRecord, FieldRecord, bin_keys, current_bins, moment
 from seacage.surrogates import (
     Domain,
     FittedGaussianProcess,
@@ -26,6 +27,7 @@ from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
 from seacage.twin._pairs import align, spread_out, training_window
+from seacage.twin._profiles import Profiles
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
@@ -116,6 +118,7 @@ def train(
     # Level 2 that a base has goes by the base's, and the paper's few minutes show none.
     if not models.upper and training.choice != "paper":
         travel_time = fit_travel_time(field, sensors, training)
+    models = _with_profiles(models, field, training, travel_time)
     found = {name: _sensor_training(field, name, training, travel_time) for name in sensors}
     data = CageTraining(
         models=models,
@@ -151,6 +154,18 @@ def _with_waves(models: Models, field: FieldRecord) -> Models:
     return replace(models, loads=replace(models.loads, waves=waves))
 
 
+def _with_profiles(
+    models: Models, field: FieldRecord, training: Training, travel_time: TravelTime
+) -> Models:
+    """Models whose profiles are those of the field's training window, where it has enough."""
+    if "profile" not in models.inputs or len(field.buoy) == 0:
+        return models
+    time = field.buoy.time
+    time = time[time < time[0] + np.timedelta64(round(86400.0 * training.days), "s")]
+    profiles = Profiles.of_water(travel_time.water_at(field.buoy, time))
+    return models if profiles is None else replace(models, profiles=profiles)
+
+
 def _check_inputs(
     campaign: CampaignRecord | None,
     field: FieldRecord | None,
@@ -176,6 +191,18 @@ def _check_inputs(
     if campaign and "waves" in training.inputs and not any(sea.hs for sea in campaign.seas):
         raise NonsenseError(
             "train: the campaign has no waves, which the inputs ask for. Simulate one with waves."
+        )
+    if "profile" not in training.inputs:
+        return
+    if campaign and not any(sea.current_shear for sea in campaign.seas):
+        raise NonsenseError(
+            "train: the currents of the campaign do not change with depth, and the inputs ask for "
+            "a profile. Simulate one with `--plan profile`."
+        )
+    if field and len(current_bins(field.buoy.values)) < 2:
+        raise NonsenseError(
+            f"train: {field.buoy.stream} has the current at fewer than two depths, and the inputs "
+            f"ask for a profile. Give it keys such as {' and '.join(bin_keys(5.0))}."
         )
 
 
@@ -203,7 +230,7 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
         pairs = align(
             field, name, start=windows[name].end, mean_s=mean_s, travel_time=twin.travel_time
         )
-        pairs = pairs.rows(pairs.metocean.known(models.inputs))
+        pairs = pairs.through(models.inputs)
         if len(pairs) == 0:
             continue
         end = moment(pairs.time[-1]) + timedelta(seconds=mean_s)
@@ -306,6 +333,7 @@ def _level_one(
         still_volume=still_volume,
         bridles=bridles,
         shape=shape,
+        profiles=_profiles_of_campaign(water) if "profile" in training.inputs else None,
         loads=loads,
         parted=damaged,
     )
@@ -322,6 +350,13 @@ def _level_one(
         seed=training.seed,
     )
     return Twin(models=models, provenance=provenance)
+
+
+def _profiles_of_campaign(water: Metocean) -> Profiles:
+    """Profiles of a campaign over their currents at the surface."""
+    assert water.profile is not None
+    surface = over_depth(water.profile[:, :2], water.profile[:, 2:], np.zeros(1))[:, 0]
+    return Profiles.of(surface, water.profile)
 
 
 def _better_kernel(
@@ -351,7 +386,7 @@ def _sensor_training(
     (start, end), paper = window, training.choice == "paper"
     mean_s = None if paper else training.mean_s
     pairs = align(field, sensor, start=start, end=end, mean_s=mean_s, travel_time=travel_time)
-    pairs = pairs.rows(pairs.metocean.known(training.inputs))
+    pairs = pairs.through(training.inputs)
     if paper:
         span = PAPER_WINDOW_S[next(iter(record.values))]
         second = (pairs.time - pairs.time[:1]) / np.timedelta64(1, "s")
@@ -396,6 +431,7 @@ def _with_level_2_in_waves(
     )
     if windows is None:
         return models
+    windows = replace(windows, metocean=windows.metocean.through(models.inputs))
     windows = windows.rows(windows.metocean.known(models.inputs))
     if sensor not in bridles:
         windows = windows.rows(models.loads.hold(windows.metocean).inside)

@@ -1,7 +1,7 @@
 """Travel time of the current from the buoy to the cage, as the sensors' readings show it."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import timedelta
 from itertools import product
 
@@ -66,7 +66,7 @@ class _Series:
     pairs: Pairs
     # The buoy's sound samples: times [us] and currents [m/s]
     time: Int[np.ndarray, " sample"]
-    velocity: Float[np.ndarray, "sample 2"]
+    velocity: Float[np.ndarray, "sample component"]
 
     @classmethod
     def of(cls, field: FieldRecord, sensor: str, training: Training) -> "_Series | None":
@@ -76,9 +76,15 @@ class _Series:
         if window is None or window[1] - window[0] < timedelta(days=LEAST_DAYS):
             return None
         pairs = align(field, sensor, start=window[0], end=window[1], mean_s=MEAN_S)
-        velocity = Metocean.of_record(field.buoy).current_velocity
-        sound = np.isfinite(velocity).all(axis=1)
-        own = cls(pairs=pairs, time=microseconds(field.buoy.time[sound]), velocity=velocity[sound])
+        water = Metocean.of_record(field.buoy)
+        if "profile" not in training.inputs:
+            water = replace(water, profile=None)
+        sound = np.isfinite(water.currents).all(axis=1)
+        own = cls(
+            pairs=pairs,
+            time=microseconds(field.buoy.time[sound]),
+            velocity=water.currents[sound],
+        )
         enough = len(pairs) >= LEAST_MEANS and len(np.unique(own.day % 2)) == 2
         return own if enough and np.ptp(pairs.value) > 0.0 else None
 
@@ -101,12 +107,14 @@ class _Series:
         return np.maximum(np.abs(errors), NO_ERROR)
 
 
-def _columns(velocity: Float[np.ndarray, "row 2"]) -> Float[np.ndarray, "row column"]:
-    east, north = velocity.T
+def _columns(currents: Float[np.ndarray, "row component"]) -> Float[np.ndarray, "row column"]:
+    """Terms of the current, of its mean where there is a profile, and then of the shear too."""
+    east, north = currents[:, 2:4].T if currents.shape[1] > 2 else currents.T
     speed, direction = np.hypot(east, north), np.arctan2(north, east)
     turns = [turn(k * direction) for k in HARMONICS for turn in (np.cos, np.sin)]
     return np.column_stack(
         [np.ones_like(speed), east, north, speed, speed * east, speed * north, speed**2]
         + [speed * one for one in turns]
         + [speed**2 * one for one in turns]
+        + [*currents[:, 4:].T, *(speed * one for one in currents[:, 4:].T)]
     )

@@ -88,7 +88,7 @@ def sensor_windows(
     label = microsecond // round(WINDOW_S * 1e6)
     steady = np.concatenate([[False], np.abs(step - every) < 0.1 * every])
     shift = float(pairs.value.mean())
-    columns = (*pairs.metocean.table.T, pairs.value - shift, (pairs.value - shift) ** 2)
+    columns = (*pairs.metocean.whole.T, pairs.value - shift, (pairs.value - shift) ** 2)
     number, (*water, mean, square) = block_means(label, *columns)
     metocean = Metocean.from_table(np.column_stack(water))
     variance = np.maximum(square - mean**2, 0.0)
