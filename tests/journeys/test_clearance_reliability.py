@@ -33,7 +33,7 @@ def unseen():
 
 
 def brier(reliability: Reliability) -> float:
-    return float(np.mean((reliability.p - reliability.happened) ** 2))
+    return float(np.mean((reliability.p - reliability.observed) ** 2))
 
 
 @pytest.mark.slow
@@ -45,14 +45,14 @@ def test_of_a_hundred_points_foretold_to_be_too_near_so_many_are(twin, unseen):
         # probabilities are too sure, by up to 22 points of a hundred (docs/rov.md).
         if count >= 100:
             assert happened == pytest.approx(foretold, abs=0.1 if foretold < 0.5 else 0.22)
-    assert scores.happened.mean() == pytest.approx(scores.p.mean(), abs=0.03)
+    assert scores.observed.mean() == pytest.approx(scores.p.mean(), abs=0.03)
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(600)
 def test_of_a_hundred_paths_foretold_to_come_too_near_so_many_do(twin, unseen):
     scores = score_paths(twin, unseen)
-    assert scores.happened.mean() == pytest.approx(scores.p.mean(), abs=0.05)
+    assert scores.observed.mean() == pytest.approx(scores.p.mean(), abs=0.05)
     for count, foretold, happened in scores.table(bins=3):
         if count >= 60:
             assert happened == pytest.approx(foretold, abs=0.15)

@@ -24,18 +24,18 @@ _NOW = datetime(2020, 1, 18, tzinfo=UTC)  # any time will do
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reliability:
-    """Predicted probabilities of some events, and what happened."""
+    """Predicted probabilities of some events, and what was observed."""
 
     p: Float[np.ndarray, " event"]  # that the true net is nearer than the given distance [-]
-    happened: Bool[np.ndarray, " event"]  # whether it was
+    observed: Bool[np.ndarray, " event"]  # whether it was
     speed: Float[np.ndarray, " event"]  # of the current that the buoy reported [m/s]
 
     def table(self, *, bins: int = 10) -> list[tuple[int, float, float]]:
-        """Reliability: events, mean probability and share that happened, by probability."""
+        """Reliability: events, mean probability and share that was observed, by probability."""
         number = np.minimum((self.p * bins).astype(int), bins - 1)
         rows = (number == one for one in np.unique(number))
         return [
-            (int(row.sum()), float(self.p[row].mean()), float(self.happened[row].mean()))
+            (int(row.sum()), float(self.p[row].mean()), float(self.observed[row].mean()))
             for row in rows
         ]
 
@@ -89,15 +89,15 @@ def score_points(
     ``below``: the distance of the event [m].
     """
     random = np.random.default_rng(seed)
-    foretold, happened, speed = list[np.ndarray](), list[np.ndarray](), list[float]()
+    predicted, observed, speed = list[np.ndarray](), list[np.ndarray](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
         net = PredictedNet.under(twin, Metocean.without_waves(velocity[None]), t=_NOW)
         point = _near(net, random, points)
-        foretold.append(net.clearance(point, below=below).p_below)
-        happened.append(twin.cage.nearest(point, true).distance < below)
+        predicted.append(net.clearance(point, below=below).p_below)
+        observed.append(twin.cage.nearest(point, true).distance < below)
         speed += [float(np.hypot(*velocity))] * len(point)
     return Reliability(
-        p=np.concatenate(foretold), happened=np.concatenate(happened), speed=np.array(speed)
+        p=np.concatenate(predicted), observed=np.concatenate(observed), speed=np.array(speed)
     )
 
 
@@ -109,15 +109,15 @@ def score_paths(
     A path begins somewhere near the cage and ends some 15 m off.
     """
     random = np.random.default_rng(seed)
-    foretold, happened, speed = list[float](), list[bool](), list[float]()
+    predicted, observed, speed = list[float](), list[bool](), list[float]()
     for velocity, true in zip(shapes.current_velocity, shapes.node_position, strict=True):
         net = PredictedNet.under(twin, Metocean.without_waves(velocity[None]), t=_NOW)
         for _ in range(paths):
             along = net.along(_path(net, random), below=below)
-            foretold.append(along.p_below)
-            happened.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
+            predicted.append(along.p_below)
+            observed.append(bool(twin.cage.nearest(along.point, true).distance.min() < below))
             speed.append(float(np.hypot(*velocity)))
-    return Reliability(p=np.array(foretold), happened=np.array(happened), speed=np.array(speed))
+    return Reliability(p=np.array(predicted), observed=np.array(observed), speed=np.array(speed))
 
 
 def without_drift(

@@ -20,7 +20,7 @@ def truth(count: int, seed: int) -> TrueShapes:
 def test_a_table_holds_every_event_once():
     p = np.array([0.0, 0.05, 0.5, 0.52, 1.0])
     happened = np.array([False, True, True, True, True])
-    scores = Reliability(p=p, happened=happened, speed=np.zeros(5))
+    scores = Reliability(p=p, observed=happened, speed=np.zeros(5))
     assert scores.table(bins=2) == [
         (2, pytest.approx(0.025), 0.5),
         (3, pytest.approx(2.02 / 3.0), 1.0),
@@ -32,16 +32,16 @@ def test_a_twin_that_knows_its_error_foretells_better_than_one_that_does_not():
 
     def brier(twin):
         scores = score_points(twin, shapes, points=40)
-        return np.mean((scores.p - scores.happened) ** 2)
+        return np.mean((scores.p - scores.observed) ** 2)
 
     assert brier(erring_twin()) < 0.9 * brier(stand_in_twin())
 
 
 def test_paths_are_scored_as_points_are():
     scores = score_paths(erring_twin(), truth(20, seed=8), paths=3)
-    assert len(scores.p) == len(scores.happened) == len(scores.speed) == 60
-    assert abs(scores.p.mean() - scores.happened.mean()) < 0.1
-    assert scores.p[scores.happened].mean() > scores.p[~scores.happened].mean() + 0.3
+    assert len(scores.p) == len(scores.observed) == len(scores.speed) == 60
+    assert abs(scores.p.mean() - scores.observed.mean()) < 0.1
+    assert scores.p[scores.observed].mean() > scores.p[~scores.observed].mean() + 0.3
 
 
 def test_the_error_is_learned_from_the_virtual_field_against_the_twins_own_answers(monkeypatch):

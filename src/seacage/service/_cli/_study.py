@@ -111,7 +111,7 @@ def _shape_line(score: "ShapeScore") -> str:
         f"MAE {score.mae:.3g} m, 99 % of nodes within {score.p99:.3g} m, worst "
         f"{score.worst:.3g} m (without drift {score.mae_without_drift:.3g}, "
         f"{score.p99_without_drift:.3g} and {score.worst_without_drift:.3g} m); "
-        f"hears {score.inputs} (computed)"
+        f"inputs: {score.inputs} (computed)"
     )
 
 

@@ -154,7 +154,7 @@ def get_state(live: Live, at: At = None) -> State:
 
 @cages.get("/{cage}/shape", dependencies=may_read, responses=READ)
 def get_shape(live: Live, at: At = None) -> Shape:
-    """Say where the net is, node by node, and how surely."""
+    """Say where the net is, node by node, with its uncertainty."""
     return shape_of(live.snapshot_at(at).answered)
 
 

@@ -46,7 +46,7 @@ _GEOJSON = body_of(GEOJSON, "The file.", schema={"type": "object"}, example=_MAP
 def ask_clearance(
     live: Live, body: schemas.ClearanceQuery, at: At = None
 ) -> schemas.ClearanceAnswer:
-    """Say how far points, or a path, are from the net, and how surely.
+    """Measure how far points, or a path, are from the net, with the uncertainty.
 
     Distances are to the net as the shape's call gives it, two triangles to a panel. The
     probability takes in what the twin knows of its own error; where that is not known

@@ -59,7 +59,7 @@ def sensor_gaps(windows: Windows, *, seed: int) -> tuple[SensorGap, ...]:
 
 
 def sectors(windows: Windows) -> Int[np.ndarray, " window"]:
-    """Which eighth of the compass the current goes to, as the twin hears it."""
+    """Which eighth of the compass the current goes to, as the twin receives it."""
     eighth = 360.0 / len(SECTORS)
     turned = compass(windows.water.current_velocity) + eighth / 2.0
     return (turned // eighth).astype(int) % len(SECTORS)

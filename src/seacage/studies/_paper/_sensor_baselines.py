@@ -1,4 +1,4 @@
-"""A sceptic's baselines beside level 2 of each sensor, from the readings that it learns from."""
+"""Simple baselines beside level 2 of each sensor, from the readings that it learns from."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Loads of shackled lines in waves on held-out days: both fidelities and a sceptic's baselines."""
+"""Loads of shackled lines in waves on held-out days: both fidelities and simple baselines."""
 
 import math
 from collections.abc import Mapping
@@ -181,7 +181,7 @@ def _score(
 def predict_by_baselines(
     name: str, before: Windows, after: Windows, *, low: Series, there: HeldOut
 ) -> dict[str, HeldOut]:
-    """A sceptic's predictions of a statistic of ``after``, fitted to ``before``.
+    """Predictions by simple baselines of a statistic of ``after``, fitted to ``before``.
 
     All on the scale that level 2 learns on: the tension of a mean, else the logarithm.
 

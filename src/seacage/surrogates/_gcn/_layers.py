@@ -63,7 +63,7 @@ def paper_network(
 ) -> Numbers:  # standardised (row, node, 3)
     """Three graph convolutions of (rest position, sea state), Swish between them.
 
-    All nodes hear the same sea state, so the first layer propagates its share once for all
+    All nodes have the same sea state, so the first layer propagates its share once for all
     cases; the numbers are those of the full node table.
     """
     p = parameters

@@ -1,4 +1,4 @@
-"""Loads in waves on held-out days: scores of both fidelities, and of a sceptic's baselines."""
+"""Loads in waves on held-out days: scores of both fidelities, and of simple baselines."""
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
@@ -99,7 +99,7 @@ def test_where_level_1_is_right_level_2_does_not_differ_from_it():
     assert one.gain[LEVEL_1] == Interval(mean=0.0, low=0.0, high=0.0)
 
 
-def test_a_sceptics_baselines_are_what_their_names_say():
+def test_simple_baselines_are_what_their_names_say():
     error = scores(1.4)["standard deviation"].error
     # A factor is a line through level 1, whose waves rise from the first day to the second.
     assert error["gain and offset"] < 0.1

@@ -26,7 +26,7 @@ def clearance(
     net: NetOptions,
     out: OutFile = None,
 ) -> None:
-    """Say how far points or a path are from the net, and how surely.
+    """Measure how far points or a path are from the net, with the uncertainty.
 
     Asks a running service about its net now, or a twin's folder about a current. Distances
     are to the predicted net; the probability that the true one is nearer than --below takes in
@@ -142,7 +142,7 @@ def inspect_path(
     """Lay an ROV's way along the net, facing it.
 
     The way follows the net that is to be expected, from the top to the tip, and every waypoint
-    says how far the net is and how surely.
+    says how far the net is, with the uncertainty.
 
     Example:
         seacage inspect-path --to http://127.0.0.1:8000 --token TOKEN --out way.csv
