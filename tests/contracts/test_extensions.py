@@ -252,7 +252,7 @@ def test_a_name_of_ours_stays_ours(packages):
         ("tl-shared", "'tl-shared' of tidelab 2.5 and wavelab 2.5. Uninstall"),
         ("tl-none", "'tl-none' of tidelab 2.5 fails (AttributeError"),
         ("tl-no-module", "'tl-no-module' of tidelab 2.5 fails (ModuleNotFoundError"),
-        ("tl-reader", "'tl-reader' of tidelab 2.5 is a Reader, where a ScreenLaw is needed"),
+        ("tl-reader", "'tl-reader' of tidelab 2.5 is of type Reader, where a ScreenLaw is needed"),
     ],
 )
 def test_a_name_without_a_law_is_refused_in_one_sentence(packages, law, says):

@@ -47,8 +47,8 @@ def load_extension(group: Group, name: str, kind: type, ours: tuple[str, ...] = 
     value = call_extension(title, found[0].load)
     if not isinstance(value, kind):
         raise InputError(
-            f"The {title} is a {type(value).__name__}, where a {kind.__name__} is needed. Ask its "
-            "authors."
+            f"The {title} is of type {type(value).__name__}, where a {kind.__name__} is needed. "
+            "Ask its authors."
         )
     return Extension(source=sources[0], title=title, value=value)
 
