@@ -207,10 +207,10 @@ class Screen:
     def skin(self) -> float:
         """C_D of a panel along the flow [-]."""
         given = self.tuning.skin_friction
-        return self._published_skin if given is None else given
+        return self._skin_as_published if given is None else given
 
     @property
-    def _published_skin(self) -> float:
+    def _skin_as_published(self) -> float:
         own = own_law(self.law)
         return SKIN_FRICTION[str(self.law)] if own is None else own.skin_friction
 
@@ -229,7 +229,7 @@ class Screen:
             terms = (slope, 0.0, lift, 0.0)
         slope, third, lift, second = terms
         # what acts along the panel, as (1 − cosθ): a facing one bears what it did
-        slope = slope + (self._published_skin - self.skin)
+        slope = slope + (self._skin_as_published - self.skin)
         terms = (self.skin, slope, third, self.tuning.lift_factor * lift, second)
         names = ("constant", "slope", "third", "lift", "lift_second")
         like = np.ones_like(speed)

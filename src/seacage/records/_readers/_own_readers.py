@@ -47,8 +47,8 @@ def read_by_own(path: Path, stream: str) -> Record | None:
     known = [load_extension("readers", name, Reader) for name in names]
     found = [one for one in known if ending in one.value.endings and ending not in _TEXTS]
     if not found:
-        asked = [one for one in known if one.value.recognises]
-        found = [o for o in asked if call_extension(o.title, o.value.recognises, start)]
+        able = [one for one in known if one.value.recognises]
+        found = [one for one in able if call_extension(one.title, one.value.recognises, start)]
     if not found:
         return None
     title = " and the ".join(one.title for one in found)
