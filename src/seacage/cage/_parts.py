@@ -283,7 +283,7 @@ class Frame(Part):
     rope_diameter: float = quantity("m", "of the frame rope")
     rope_axial_stiffness: float = quantity("n", "EA of the frame rope")
     rope_slack: float = quantity(
-        "m", "how much longer it is than balance in still water requires", low=-1.0, default=0.0
+        "m", "how much longer it is than balance in still water asks for", low=-1.0, default=0.0
     )
     rope_slack_sd: float | None = quantity(
         "m", "standard deviation of the slack, as far as it is known", default=None

@@ -37,7 +37,7 @@ def ask_what_if(live: Live, body: WhatIf) -> Response:
     from seas whose period follows their height. The answer's ``water`` says what of the question
     counted: null is what the twin knows nothing of.
     """
-    sea = SeaState(**{name: getattr(body, key) for key, name in SEA_COLUMNS.items()})
+    sea = SeaState(**{SEA_COLUMNS[key]: value for key, value in body})
     # At one depth, as a buoy's, where the twin takes a profile
     water, past, now = replace(Metocean.of(sea), profile=None), live.past, live.clock.now()
     twin = past.twin
