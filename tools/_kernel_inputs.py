@@ -225,11 +225,12 @@ def settle(library: ctypes.CDLL, rng: np.random.Generator) -> None:
     lanes = int(library.seacage_lanes())
     nodes, graph, pattern = a_graph(int(rng.integers(GRAPHS)))
     structure = a_structure(rng, nodes, graph)
-    panels, bars = len(graph["panels"]), len(graph["bars"])
+    panels, bars, pipes = (len(graph[part]) for part in ("panels", "bars", "cylinders"))
     flow = c.FlowStruct.filled(
-        direction=doubles(rng, 3, lanes),
+        direction=doubles(rng, panels, 3, lanes),
         panel=doubles(rng, panels, 6, lanes),
-        pipe_pressure=doubles(rng, lanes),
+        pipe_direction=doubles(rng, pipes, 3, lanes),
+        pipe_pressure=doubles(rng, pipes, lanes),
     )
     patience, steps, rounds = (int(n) for n in rng.integers((1, 0, 0), (3, 4, 4)))
     relaxation = c.RelaxationStruct.filled(
