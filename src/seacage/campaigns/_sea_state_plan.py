@@ -13,7 +13,7 @@ import numpy as np
 
 from seacage.conventions import TABLE_BYTES, InputError, parse_json, read_text
 from seacage.ocean import MAX_CURRENT_SPEED, SeaState
-from seacage.records import SEA_COLUMNS, read_sea_states
+from seacage.records import SEA_COLUMNS, read_sea_states, sea_columns
 
 Range = tuple[float, float]
 
@@ -242,8 +242,7 @@ class Plan:
     def to_json(self) -> str:
         """JSON text with the unit in every key, one case per line."""
         head = {"name": self.name, "duration_s": self.duration, "seed": self.seed}
-        sheared = any(sea.current_shear for sea in self.seas)
-        doors = {key: name for key, name in SEA_COLUMNS.items() if sheared or "shear" not in name}
+        doors = sea_columns(self.seas)
         cases = ",\n".join(
             json.dumps({door: getattr(sea, name) for door, name in doors.items()})
             for sea in self.seas

@@ -47,9 +47,8 @@ def current_modes(
     middle, level = share.sum(axis=-1) / count, own.sum(axis=1) / count[:, None]
     off = np.where(known, share - middle[:, None], 0.0)
     slope = np.einsum("tb,tbx->tx", off, own) / np.maximum((off**2).sum(axis=-1), 1e-9)[:, None]
-    span = np.where(known, depth, -np.inf).max(axis=-1) - np.where(known, depth, np.inf).min(
-        axis=-1
-    )
+    deepest = np.where(known, depth, -np.inf).max(axis=-1)
+    span = deepest - np.where(known, depth, np.inf).min(axis=-1)
     slope[~(span >= LEAST_SPAN)] = np.nan
     return level - middle[:, None] * slope, slope
 

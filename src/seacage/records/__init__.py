@@ -68,7 +68,7 @@ from seacage.records._readers._netcdf import write_record
 from seacage.records._readers._own_readers import Reader
 from seacage.records._readers._reader import known_map, read_map, read_record
 from seacage.records._readers._results import read_results
-from seacage.records._readers._sea_states import SEA_COLUMNS, read_sea_states
+from seacage.records._readers._sea_states import SEA_COLUMNS, read_sea_states, sea_columns
 from seacage.records._record import Record
 from seacage.records._sample import Sample, check_stream
 from seacage.records._times import instant, moment
@@ -139,6 +139,7 @@ __all__ = [
     "read_results",
     "read_rows",
     "read_sea_states",
+    "sea_columns",
     "shipped_maps",
     "verdicts_on",
     "withdrawn",

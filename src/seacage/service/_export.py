@@ -17,7 +17,7 @@ from jaxtyping import Bool, Float
 from seacage.cage import Cage, Structure
 from seacage.conventions import InputError, Result
 from seacage.ocean import SeaState
-from seacage.records import SEA_COLUMNS, Record, key_of
+from seacage.records import Record, key_of, sea_columns
 from seacage.twin import Answer, Twin, interval_reason
 
 if TYPE_CHECKING:
@@ -315,7 +315,7 @@ def write_response(
             "law": law,
             **changes,
             **({"comment": " ".join(warnings)} if warnings else {}),
-            **{key: getattr(sea, name) or 0.0 for key, name in SEA_COLUMNS.items()},
+            **{key: getattr(sea, name) or 0.0 for key, name in sea_columns([sea]).items()},
         },
     )
     dataset.to_netcdf(path, engine="h5netcdf")  # pyright: ignore[reportUnknownMemberType]

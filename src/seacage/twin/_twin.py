@@ -367,7 +367,7 @@ class Twin:
         past = state.around(self.buoy, left, keys) if left < sent else ()
         if not past:
             return reported
-        known = Metocean.joined(*(_currents_of(one, keys, reported) for one in past)).currents
+        known = _water_of(past, keys, reported).currents
         times = [*(one[keys[0]].t for one in past), sent]
         velocity = travel.current_at(
             microseconds(np.array([*map(instant, times)])),
@@ -396,16 +396,21 @@ def replay(twin: Twin, samples: Iterable[Sample]) -> Iterator[Event]:
         yield from events
 
 
-def _currents_of(newest: Mapping[str, Sample], keys: Sequence[str], like: Metocean) -> Metocean:
-    """Water of the newest values of a time, with a profile where other water has one."""
-    current = {key: np.array([newest[key].values[key]]) for key in keys}
-    if like.profile is None:
-        return Metocean.from_columns(current, 1)
-    bins = [key for depth in current_bins(newest) for key in bin_keys(depth)]
-    sound = {key: is_usable(newest[key], key) for key in bins}
-    values = {key: np.array([newest[key].values[key] if sound[key] else np.nan]) for key in bins}
-    own = Metocean.from_columns(values | current, 1)
-    return own if own.profile is not None else replace(own, profile=np.full((1, 4), np.nan))
+def _water_of(
+    past: Sequence[Mapping[str, Sample]], keys: Sequence[str], like: Metocean
+) -> Metocean:
+    """Water of the newest values of some times, with a profile where other water has one."""
+
+    def value(one: Mapping[str, Sample], key: str) -> float:
+        return one[key].values[key] if key in one and is_usable(one[key], key) else np.nan
+
+    bins = () if like.profile is None else current_bins({key for one in past for key in one})
+    every = (*keys, *(key for depth in bins for key in bin_keys(depth)))
+    columns = {key: np.array([value(one, key) for one in past]) for key in every}
+    own = Metocean.from_columns(columns, len(past))
+    if like.profile is None or own.profile is not None:
+        return own
+    return replace(own, profile=np.full((len(past), 4), np.nan))
 
 
 def _fault(buoy: str, key: str, flag: int) -> str:

@@ -8,14 +8,7 @@ from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
 from seacage.dynamics._kernel._march_inputs import Ocean
-from seacage.ocean import (
-    MODES_DEPTH,
-    CurrentProfile,
-    SeaState,
-    Waves,
-    over_depth,
-    sample_waves,
-)
+from seacage.ocean import MODES_DEPTH, CurrentProfile, SeaState, Waves, over_depth, sample_waves
 
 # Components of the waves of a case at most: the kernel keeps their phases on a thread's stack
 MOST_COMPONENTS = 1000

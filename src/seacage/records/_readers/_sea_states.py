@@ -1,6 +1,7 @@
 """Sea states of a table, one a row."""
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ from jaxtyping import Float
 
 from seacage.conventions import InputError, RecordError
 from seacage.ocean import SeaState
+from seacage.records._campaign_store import sea_names
 from seacage.records._readers._csv import number_in
 from seacage.records._readers._table import PLAIN, Table, read_table
 
@@ -21,6 +23,13 @@ SEA_COLUMNS = {
     "shear_to_deg": "shear_to",
 }
 """Names of ``SeaState`` by column."""
+
+
+def sea_columns(seas: Iterable[SeaState]) -> dict[str, str]:
+    """``SEA_COLUMNS`` of some seas: those of the shear only where one of them has it."""
+    names = sea_names(seas)
+    return {key: name for key, name in SEA_COLUMNS.items() if name in names}
+
 
 _WAVES = ("hs", "tp", "wave_from")
 _REQUIRED = ("current_speed_m_s", "current_to_deg")
