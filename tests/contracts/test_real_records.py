@@ -8,7 +8,17 @@ import pytest
 
 from public_files import public_file
 from seacage.conventions import Flag, Origin, RecordError
-from seacage.records import Column, ColumnMap, NetcdfMap, inspect_file, read_record, shipped_maps
+from seacage.records import (
+    Column,
+    ColumnMap,
+    NetcdfMap,
+    ProfilerMap,
+    bin_keys,
+    current_bins,
+    inspect_file,
+    read_record,
+    shipped_maps,
+)
 
 
 def counted(record, key):
@@ -176,3 +186,31 @@ def test_the_same_day_has_the_same_vectors_whichever_way_its_file_points(tmp_pat
             np.testing.assert_allclose(
                 read.values["current_speed_m_s"] * got(angle), want, atol=1e-12
             )
+
+
+@pytest.mark.parametrize(
+    ("name", "depths", "share"),
+    [
+        ("adcp_long_beach_2019.txt", (6.5, 24.5), 0.98),
+        ("adcp_western_shoal_2022.txt", (3.5, 7.5), 0.99),
+    ],
+)
+def test_profiles_over_the_bottom_are_read_at_depths(shared, name, depths, share):
+    # first bin and length are not in these files; 2 and 1 m stand for them
+    options = {"time_zone": "UTC", "looking": "up", "declination_deg": 0.0}
+    columns = ProfilerMap(first_bin_m=2.0, bin_m=1.0, **options)
+    record = read_record(shared / "data" / name, columns=columns)
+    there = [depth for depth in current_bins(record.values) if depths[0] <= depth <= depths[1]]
+    assert len(there) >= depths[1] - depths[0]
+    for depth in there:
+        assert np.mean(record.usable(bin_keys(depth)[0])) > share
+
+
+def test_a_profile_that_mhkit_saved_is_read_at_depths_by_its_pressure(shared):
+    pytest.importorskip("xarray")
+    path = shared / "data" / "adcp_awac_snippet.nc"
+    columns = ProfilerMap(time_zone="-07:00", looking="up", declination_deg=0.0, average_s=10.0)
+    record = read_record(path, columns=columns)
+    assert str(record.time[0]) == "2012-06-12T19:00:05.000000"
+    assert current_bins(record.values)[-1] < 16.0  # above the instrument
+    assert "the instrument at 15.9 to 18.6 m" in record.notes[0]

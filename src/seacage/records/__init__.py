@@ -66,6 +66,7 @@ from seacage.records._readers._csv import check_rows, read_rows
 from seacage.records._readers._inspect import Inspection, inspect_file
 from seacage.records._readers._netcdf import write_record
 from seacage.records._readers._own_readers import Reader
+from seacage.records._readers._profiler import ProfilerMap
 from seacage.records._readers._reader import known_map, read_map, read_record
 from seacage.records._readers._results import read_results
 from seacage.records._readers._sea_states import SEA_COLUMNS, read_sea_states, sea_columns
@@ -96,6 +97,7 @@ __all__ = [
     "Key",
     "Limits",
     "NetcdfMap",
+    "ProfilerMap",
     "QualityState",
     "Range",
     "Reader",

@@ -3,8 +3,11 @@
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 from seacage.conventions import InputError
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +62,13 @@ def bin_keys(depth: float) -> tuple[str, str]:
     return f"current_speed_{depth:.4g}m_m_s", f"current_to_{depth:.4g}m_deg"
 
 
+def keys_at(depth: float, values: Mapping[str, T]) -> dict[str, T]:
+    """The current among some values, by its keys at a depth [m]; others are left out."""
+    plain = ("current_speed_m_s", "current_to_deg")
+    keys = zip(plain, bin_keys(round(depth, 1)), strict=True)
+    return {key: values[one] for one, key in keys if one in values}
+
+
 def key_of(name: str) -> Key | None:
     """The quantity of a door key, at a depth or none; None where no quantity has the key."""
     found = _BIN.fullmatch(name)
@@ -71,6 +81,12 @@ def plain_key(name: str) -> str:
     """The key of a quantity without its depth."""
     found = _BIN.fullmatch(name)
     return name if found is None else found[1] + found[3]
+
+
+def depth_of(name: str) -> float | None:
+    """The depth in a key [m]; None where it has none."""
+    found = _BIN.fullmatch(name)
+    return None if found is None else float(found[2])
 
 
 def current_bins(names: Iterable[str]) -> tuple[float, ...]:

@@ -64,9 +64,9 @@ class TomlTable:
             raise RecordError(f'{self.where}: {name} is missing or no text. Write {name} = "…".')
         return value
 
-    def truth(self, name: str) -> bool:
-        """Whether something holds; it does where it is missing."""
-        value = self.values.get(name, True)
+    def truth(self, name: str, *, default: bool = True) -> bool:
+        """Whether something holds."""
+        value = self.values.get(name, default)
         if not isinstance(value, bool):
             raise RecordError(f"{self.where}: {name} = {value!r} is neither true nor false.")
         return value

@@ -16,7 +16,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError
-from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
+from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period, keys_at
 from seacage.records._netcdf_file import NETCDF_TROUBLE, check_netcdf
 from seacage.records._readers import _column_map
 from seacage.records._readers._csv import in_order
@@ -107,6 +107,7 @@ class NetcdfMap:
     time_zone: str | None = None
     depth_m: float | None = None  # which depth of a profile is read [m]; one that the file has
     range_m: float | None = None  # which bin of a profile, from the instrument, is read [m]
+    profile: bool = False  # whether the current is read at every depth, as the bins of an ADCP
     # Index along each other dimension, such as ``rlat``
     at: Mapping[str, int] = field(default_factory=dict[str, int])
     # Variables by name, where their standard names do not tell; a component of a vector is
@@ -131,7 +132,7 @@ class NetcdfMap:
         table = TomlTable.parse(text, where)
         table.check_filled()
         known = ("kind", "title", "origin", "time_zone", "depth_m", "range_m", "at", "columns")
-        table.check_names(known)
+        table.check_names((*known, "profile"))
         at = table.table("at", default={})
         return cls(
             title=table.text("title", default="NetCDF file"),
@@ -139,6 +140,7 @@ class NetcdfMap:
             time_zone=table.text("time_zone") if "time_zone" in table.values else None,
             depth_m=table.number("depth_m"),
             range_m=table.number("range_m"),
+            profile=table.truth("profile", default=False),
             at={name: int(at.number(name) or 0) for name in at.values},
             columns=_column_map.parse_columns(table, default={}),
         )
@@ -151,6 +153,8 @@ def read_cf(path: Path, choice: NetcdfMap, *, stream: str) -> Record:
     nothing tells.
     """
     with open_foreign(path) as dataset:
+        if choice.profile:
+            return _profile(path, dataset, choice, stream=stream)
         return _record(path, dataset, choice, stream=stream)
 
 
@@ -194,6 +198,28 @@ def _engine_of(path: Path) -> str:
     if start == b"\x89HDF\r\n\x1a\n":
         return "h5netcdf"
     raise RecordError(f"{path}: this is no NetCDF file. Give one, or a table with its column map.")
+
+
+def _profile(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream: str) -> Record:
+    """The current at each depth, and at the chosen one what else the file has."""
+    depths = [
+        float(depth)
+        for dim in dataset.dims
+        if vertical_of(dataset, str(dim)) == "depth"
+        for depth in dataset[dim].values
+    ]
+    if choice.depth_m is None or not depths:
+        raise RecordError(
+            f"{path}: profile = true reads the current at every depth below the surface, here "
+            f"{', '.join(f'{one:g}' for one in depths) or 'none'} m, and one of them as that of a "
+            "buoy. Declare it as depth_m (--depth-m); where a profiler counts from itself, give a "
+            'map of kind = "profiler".'
+        )
+    record = _record(path, dataset, choice, stream=stream)
+    for depth in depths:
+        one = _record(path, dataset, replace(choice, depth_m=depth), stream=stream)
+        record = replace(record, values={**record.values, **keys_at(depth, one.values)})
+    return replace(record, notes=(*record.notes, f"Its profile has {len(depths)} depths."))
 
 
 def _record(path: Path, dataset: "xarray.Dataset", choice: NetcdfMap, *, stream: str) -> Record:

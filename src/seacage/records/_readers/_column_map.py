@@ -16,7 +16,13 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin, RecordError, read_text
-from seacage.records._keys import NO_MEAN_PERIOD, is_mean_period
+from seacage.records._keys import (
+    NO_MEAN_PERIOD,
+    bin_keys,
+    depth_of,
+    is_mean_period,
+    plain_key,
+)
 from seacage.records._readers._local_time import parse_zone
 from seacage.records._toml import TomlTable
 
@@ -170,6 +176,7 @@ class ColumnMap:
     # Which depth of a profile, or distance from the instrument, is read [m]
     depth_m: float | None = None
     range_m: float | None = None
+    profile: bool = False  # whether the current is read at every depth, as the bins of an ADCP
     decimal: str = "."  # between a number's whole and its part: ``.`` or ``,``
     encoding: str = "utf-8"  # of the text: ``utf-8``, ``utf-16``, ``latin-1`` or ``cp1252``
     skip_lines: int = 0  # lines before the header
@@ -194,11 +201,12 @@ class ColumnMap:
                     f"{self.title}: {twice[0]!r} is declared twice. Map one column to each "
                     "quantity and list the others as ignored."
                 )
-        if not self.read_columns:
+        if not self.read_columns and not self.bins:
             raise RecordError(
                 f"{self.title}: no column is read{self._places()}. Map at least one quantity."
             )
         check_components(self.read_columns, where=self.title)
+        check_bins(self.bins, where=self.title)
         if not self.header and (named := [n for n in names if not re.fullmatch(r"[1-9]\d*", n)]):
             raise RecordError(
                 f"{self.title}: {named[0]!r} is no number of a column. Where header = false, "
@@ -248,7 +256,7 @@ class ColumnMap:
             table.check_filled()
         usual = {"title": None, "delimiter": ",", "decimal": ".", "encoding": "utf-8"}
         known = ("origin", "time", "columns", "ignored", "depth_m", "range_m", "skip_lines")
-        table.check_names((*usual, *known, "header"))
+        table.check_names((*usual, *known, "header", "profile"))
         time = table.table("time")
         time.check_names(("column", "format", "zone", "daylight_saving"))
         rest: dict[str, Any] = {one: table.number(one) for one in ("depth_m", "range_m")}
@@ -261,6 +269,7 @@ class ColumnMap:
             ignored=table.names("ignored", default=()),
             skip_lines=int(table.number("skip_lines") or 0),
             header=table.truth("header"),
+            profile=table.truth("profile", default=False),
             daylight_saving=time.truth("daylight_saving"),
             **{one: table.text(one, default=default) for one, default in usual.items()},
             **rest,
@@ -273,10 +282,16 @@ class ColumnMap:
         Each time in it must say its zone. It counts as measured.
         """
         columns = (
-            Column(name=key, quantity=name, unit=next(iter(one.units)), sense=one.sense or "")
+            Column(
+                name=key,
+                quantity=name,
+                unit=next(iter(one.units)),
+                sense=one.sense or "",
+                depth_m=depth_of(key),
+            )
             for key in keys
             for name, one in _QUANTITIES.items()
-            if one.key == key
+            if one.key == plain_key(key)
         )
         return cls(
             title="Table in house units",
@@ -285,6 +300,7 @@ class ColumnMap:
             time_format="iso",
             time_zone="stated",
             columns=tuple(columns),
+            profile=True,
         )
 
     @property
@@ -305,6 +321,15 @@ class ColumnMap:
             for column in self.columns
             if column.depth_m in {None, self.depth_m} and column.range_m in {None, self.range_m}
         )
+
+    @property
+    def bins(self) -> Mapping[float, tuple[Column, ...]]:
+        """Columns of the current by their depth [m]; none where one depth alone is read."""
+        found: dict[float, tuple[Column, ...]] = {}
+        for one in self.columns if self.profile else ():
+            if one.depth_m is not None and one.key in (*_CURRENT, *_COMPONENTS):
+                found[one.depth_m] = (*found.get(one.depth_m, ()), one)
+        return found
 
     @property
     def zone(self) -> tzinfo | None:
@@ -456,6 +481,25 @@ def check_components(columns: Iterable[Column], *, where: str) -> None:
             f"{where}: a current is current_east with current_north, both of one north, or "
             f"current_speed with current_direction; here {', '.join(sorted(norths))}. Ignore the "
             "columns too many."
+        )
+
+
+def check_bins(bins: Mapping[float, Iterable[Column]], *, where: str) -> None:
+    """Refuse a depth whose current is not whole, and two depths that would have one key.
+
+    Raises RecordError: as said.
+    """
+    for depth, columns in bins.items():
+        if len({one.key for one in columns}) != len(_CURRENT):
+            raise RecordError(
+                f"{where}: the current at {depth:g} m is not speed with direction, nor east with "
+                "north. Declare both columns of each depth, or ignore the one."
+            )
+        check_components(columns, where=where)
+    names = Counter(bin_keys(round(depth, 1))[0] for depth in bins)
+    if twice := [name for name, count in names.items() if count > 1]:
+        raise RecordError(
+            f"{where}: two depths are both {twice[0]}, in steps of 0.1 m. Ignore one of them."
         )
 
 

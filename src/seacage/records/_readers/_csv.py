@@ -1,7 +1,7 @@
 """Tables: their times and numbers, or one sentence on why not."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from seacage.conventions import Flag, Origin, RecordError
-from seacage.records._keys import key_of
+from seacage.records._keys import key_of, keys_at
 from seacage.records._readers._column_map import (
     LEAD,
     Column,
@@ -30,21 +30,33 @@ _NO_VALUE = frozenset({"", "nan", "na", "n/a", "null", "none", "mm", "-"})
 
 def record_in(table: Table, columns: ColumnMap, *, stream: str) -> Record:
     """Read a table by its map, unchecked but for what only its file shows."""
-    values: dict[str, np.ndarray] = {}
-    notes: list[str] = []
-    for column in columns.read_columns:
-        numbers, strange = _numbers(table, column, columns.decimal)
-        values[column.key] = column.convert(numbers)
-        notes += [*strange, *column.declination_notes]
+    values, notes = _values(table, columns.read_columns, columns.decimal)
+    for depth, own in columns.bins.items():
+        current, more = _values(table, own, columns.decimal)
+        values |= keys_at(depth, current)
+        notes += more
     if columns.depth_m is not None:
         notes.append(f"{columns.title}: read at a depth of {columns.depth_m:g} m.")
     if columns.range_m is not None:
         notes.append(f"{columns.title}: read {columns.range_m:g} m from the instrument.")
-    times, values = _times(table, columns), join_vectors(values, columns.read_columns)
+    times = _times(table, columns)
     record = _constants_doubted(in_order(times, values, stream=stream, origin=columns.origin))
     if table.cut:
         record = _last_row_doubted(record, table, times[-1])
     return replace(record, notes=(*notes, *record.notes))
+
+
+def _values(
+    table: Table, columns: Sequence[Column], decimal: str
+) -> tuple[dict[str, np.ndarray], list[str]]:
+    """Some columns by their keys, vectors as speed and direction, and what is to be noted."""
+    values: dict[str, np.ndarray] = {}
+    notes: list[str] = []
+    for column in columns:
+        numbers, strange = _numbers(table, column, decimal)
+        values[column.key] = column.convert(numbers)
+        notes += [*strange, *column.declination_notes]
+    return join_vectors(values, columns), notes
 
 
 def split_table(path: Path, columns: ColumnMap | None) -> tuple[Table, ColumnMap]:

@@ -14,16 +14,18 @@ from seacage.records._readers._column_map import LEAD, ColumnMap, shipped_maps
 from seacage.records._readers._csv import record_in, split_table
 from seacage.records._readers._netcdf import read_netcdf
 from seacage.records._readers._own_readers import read_by_own
+from seacage.records._readers._profiler import ProfilerMap, read_profiler
 from seacage.records._record import Record
 
-_NETCDF = re.compile(r'^\s*kind\s*=\s*"netcdf"', re.MULTILINE)
+_KIND = re.compile(r'^\s*kind\s*=\s*"(netcdf|profiler)"', re.MULTILINE)
+AnyMap = ColumnMap | NetcdfMap | ProfilerMap
 
 
-def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
-    """Read what a foreign file's columns or variables mean.
+def read_map(source: Path | str) -> AnyMap:
+    """Read what a foreign file's columns, variables or bins mean.
 
-    ``source``: a TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s; or the name of
-    a shipped column map.
+    ``source``: a TOML file, with ``kind = "netcdf"`` where it is a ``NetcdfMap``'s, ``"profiler"``
+    where it is a ``ProfilerMap``'s; or the name of a shipped column map.
 
     Raises RecordError: no such file and no such name, or a map that is refused.
     """
@@ -35,15 +37,15 @@ def read_map(source: Path | str) -> ColumnMap | NetcdfMap:
     except RecordError as error:
         known = f"Give a map{LEAD}, or the name of a shipped one: {', '.join(shipped_maps())}."
         raise RecordError(f"{error} {known}") from error
-    if _NETCDF.search(text):
-        return NetcdfMap.from_toml(text, where=str(path))
-    return ColumnMap.from_toml(text, where=str(path))
+    kind = found[1] if (found := _KIND.search(text)) else "table"
+    maps = {"table": ColumnMap, "netcdf": NetcdfMap, "profiler": ProfilerMap}
+    return maps[kind].from_toml(text, where=str(path))
 
 
 def read_record(
     path: Path | str,
     *,
-    columns: ColumnMap | NetcdfMap | None = None,
+    columns: AnyMap | None = None,
     stream: str = "buoy-1",
     limits: Limits = DEFAULT_LIMITS,
 ) -> Record:
@@ -55,7 +57,8 @@ def read_record(
     stays in its row, flagged; so does the last row of a text that ends without a line end.
     A file that a reader of another package takes is read by that, unless a map is given.
     NetCDF files are those that ``write_record`` wrote, which say their own stream and carry
-    their flags, or, with a ``NetcdfMap``, any that follow CF.
+    their flags, or, with a ``NetcdfMap``, any that follow CF. With a ``ProfilerMap`` a file is
+    that of a current profiler, raw or not.
 
     Raises RecordError: a file whose structure is wrong: no such file, no text, no rows, columns
     that the map does not know or misses, a row of another length, a time that is none.
@@ -74,6 +77,8 @@ def read_record(
     path = Path(path)
     if columns is None and (own := read_by_own(path, stream)):
         return _check(own, limits)
+    if isinstance(columns, ProfilerMap):
+        return check_record(read_profiler(path, columns, stream=stream), limits)
     if not is_netcdf(path) and not isinstance(columns, NetcdfMap):
         return _check(record_in(*split_table(path, columns), stream=stream), limits)
     if is_netcdf(path) and columns is None:

@@ -22,6 +22,7 @@ _EXTRAS = {
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
     "opcua": ("asyncua",),
+    "adcp": ("mhkit",),
 }
 Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 

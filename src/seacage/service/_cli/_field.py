@@ -12,7 +12,14 @@ from seacage.service._cli._console import guard, progress_bar, refusal, report
 
 if TYPE_CHECKING:
     from seacage.campaigns import Event, TruthParameters
-    from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, Record
+    from seacage.records import (
+        ColumnMap,
+        FieldRecord,
+        Limits,
+        NetcdfMap,
+        ProfilerMap,
+        Record,
+    )
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
 _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
@@ -180,6 +187,7 @@ class MapOptions:
         origin: Of a foreign NetCDF file: measured or computed.
         zone: Of times that name none: UTC, an offset, or of a table Europe/Oslo.
         depth_m: Which depth of a profile.
+        profile: Its other depths too, as those of an ADCP.
         range_m: Which bin of a profile, from the instrument.
         declination_deg: Of a table's magnetic directions, positive to the east.
     """
@@ -188,13 +196,14 @@ class MapOptions:
     origin: str | None = None
     zone: str | None = None
     depth_m: float | None = None
+    profile: Annotated[bool, typer.Option("--profile")] = False
     range_m: float | None = None
     declination_deg: Annotated[float | None, typer.Option(min=-180.0, max=180.0)] = None
 
-    def of(self, path: Path) -> "ColumnMap | NetcdfMap | None":
+    def of(self, path: Path) -> "ColumnMap | NetcdfMap | ProfilerMap | None":
         """The map that was named, with what the other options add to it."""
         from seacage.conventions import Origin
-        from seacage.records import ColumnMap, NetcdfMap, known_map, read_map
+        from seacage.records import ColumnMap, NetcdfMap, ProfilerMap, known_map, read_map
 
         options = {"time_zone": self.zone, "depth_m": self.depth_m, "range_m": self.range_m}
         given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
@@ -203,12 +212,19 @@ class MapOptions:
                 raise refusal(f"--origin {self.origin!r} is unknown. Say measured or computed.")
             given |= {"origin": Origin(self.origin)}
         chosen = read_map(self.columns) if self.columns else None
+        if self.profile:
+            given |= {"profile": True}
         if chosen is None and (given or self.declination_deg is not None):
             chosen = known_map(path) or NetcdfMap(title=path.name)
+        if isinstance(chosen, ProfilerMap):
+            if given or self.declination_deg is not None:
+                raise refusal("The map of a profiler declares all that it needs. Write it there.")
+            return chosen
         if isinstance(chosen, ColumnMap):
             if self.origin is not None:
                 raise refusal("--origin is for NetCDF; the map of a table says it. Leave it out.")
             chosen = chosen.answered(zone=self.zone, declination_deg=self.declination_deg)
+            chosen = replace(chosen, profile=chosen.profile or self.profile)
             return chosen.taken_at(self.depth_m, self.range_m)
         if self.declination_deg is not None:
             raise refusal("--declination-deg is for tables; of NetCDF [columns] in a map say it.")
