@@ -151,7 +151,7 @@ def test_what_is_no_profilers_file_is_refused(tmp_path, content, name, sentence)
         (("declination_deg = 0", "declination_deg = 400"), "180 degrees"),
         (("bin_m = 1.0", "bin_m = -1.0"), "bin_m = -1 must be above 0"),
         (("", "instrument_depth_m = 500"), "no bin below the surface"),
-        (("looking", "loking"), "Did you mean 'looking'"),
+        (("looking", "lookings"), "Did you mean 'looking'"),
     ],
 )
 def test_a_map_that_cannot_be_is_refused(tmp_path, change, sentence):
