@@ -84,7 +84,8 @@ def read_text(path: Path, encoding: str = "utf-8") -> str:
             place, what = f", line {before.count(10) + 1}", f"byte {error.start}"
         raise RecordError(
             f"{path}{place}: {what} is not {encoding.upper()} text. "
-            "Save the table as UTF-8, and make sure that it is no archive or spreadsheet."
+            "Save the table as UTF-8, and make sure that it is no archive or spreadsheet; a raw "
+            'file of a current profiler has a map of kind = "profiler".'
         ) from error
     if "\0" in text:
         line = text[: text.index("\0")].count("\n") + 1
