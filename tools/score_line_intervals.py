@@ -83,10 +83,11 @@ def _score(twin: Twin, seas: SeaLoads) -> dict[tuple[str, str], np.ndarray]:
     assert emulator is not None
     low, inside, _ = emulator.predict(water, duration=HALF_HOUR)
     bare, _, _ = emulator.predict(water, spread=False)
-    every = np.ones(twin.cage.bridle_count, dtype=bool)
     mean = WindowErrors(std=EXPECTED_STD, maximum=EXPECTED_MAXIMUM)
-    fixed = with_discrepancy(bare, bare, mean, every, inside)
-    alone = np.setdiff1d(np.flatnonzero(every), [one.bridle for one in twin.cage.shackles])
+    bridles = twin.cage.bridle_count
+    fixed = with_discrepancy(bare, bare, mean, bridles=bridles, own_mean=(), rows=inside)
+    shackled = [one.bridle for one in twin.cage.shackles]
+    alone = np.setdiff1d(np.arange(bridles), shackled)
     short = seas.expected_3h
     truth = dict(
         zip(

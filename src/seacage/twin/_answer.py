@@ -68,10 +68,10 @@ class Answer:
         All lines of the mooring, the bridles first; none where the twin did not learn loads in
         waves.
     line
-        Their loads in waves; None as above. At level 1 bridles have intervals where at least
-        three shackles show how far level 1 is off, other lines NaN. At level 2 those of mean and
-        standard deviation hold the ones of ten minutes, of lines whose held-out windows were
-        enough to calibrate them. Where the waves are not known the standard
+        Their loads in waves; None as above. At level 2 the intervals of mean and standard
+        deviation hold the ones of ten minutes, of lines whose held-out windows were enough to
+        calibrate them. Other bridles have intervals where at least three shackles show how far
+        level 1 is off, other lines NaN. Where the waves are not known the standard
         deviation of the mean is its spread over the site's waves, at level 1.
     line_level
         Level of each line's loads: 2 where its shackle corrects any of them, else 1.

@@ -226,10 +226,13 @@ class Models:
         loads = correct_lines(low, upper, known, bridle)
         rate = self.lines.damage_rate(loads.damage_equivalent.mean)
         assumed = self.loads.assumes_tp(known)
-        counts, bridles = inside & ~assumed, np.array(self.loads.kinds) == "bridle"
+        counts, bridles = inside & ~assumed, self.cage.bridle_count
         relative = relative_in_waves(self.line_errors.values())
         if relative is not None:
-            loads = with_discrepancy(loads, low, relative, level[bridles] < 2, counts)
+            own_mean = [line for line, one in upper.items() if one.mean]
+            loads = with_discrepancy(
+                loads, low, relative, bridles=bridles, own_mean=own_mean, rows=counts
+            )
         return {
             "node_motion": motion,
             "depth_std": self.depth_std(known, motion),
@@ -238,7 +241,8 @@ class Models:
             "line_kinds": self.loads.kinds,
             "line": replace(loads, damage_per_year=np.where(counts[:, None], YEAR * rate, np.nan)),
             "line_level": level,
-            "line_calibrated": (level > 1) | (bridles & (relative is not None)),
+            "line_calibrated": (level > 1)
+            | ((np.arange(len(level)) < bridles) & (relative is not None)),
             "line_in_domain": inside,
             "line_reason": reason,
             "line_tp_assumed": assumed,

@@ -37,7 +37,8 @@ export function windowNote(name, state) {
     // Also where there are numbers, as of a sea outside the training domain.
     state.lines_reason || (known(line?.maximum_3h_kn.mean) ? "" : state.reason),
     line && state.tp_assumed ? text("line.tpAssumed") : "",
-    line && line.level <= 1 && known(line.maximum_3h_kn.mean) ? text("line.levelOne") : "",
+    line && line.level <= 1 && known(line.maximum_3h_kn.mean) ? text(known(line.maximum_3h_kn.lower)
+      ? "line.byOthers" : "line.levelOne") : "",
   ];
   return words.filter(Boolean).join(" ");
 }

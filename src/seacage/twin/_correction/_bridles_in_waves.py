@@ -1,7 +1,7 @@
 """Discrepancy of bridles' simulated loads in waves, from the windows of those with a shackle."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,7 +22,7 @@ STD_CALIBRATION, MAXIMUM_CALIBRATION = 1.4, 1.1
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WindowErrors:
-    """Root mean square errors of level 1 in a shackle's windows, over the scale of the loads [-]."""
+    """Root mean square errors of level 1 in a shackle's windows, over the loads' scale [-]."""
 
     std: float  # of the standard deviation
     maximum: float  # of the largest load, by mean and standard deviation and level 1's peak factor
@@ -63,25 +63,29 @@ def with_discrepancy(
     loads: Loads,
     low: Loads,
     relative: WindowErrors,
-    alone: Bool[np.ndarray, " bridle"],
+    *,
+    bridles: int,
+    own_mean: Sequence[int],
     rows: Bool[np.ndarray, " case"],
 ) -> Loads:
-    """Loads with the standard deviation of the true ones about those of level 1.
+    """Loads with the standard deviation of the bridles' true ones about them.
 
-    ``low``: level 1 of all lines, the bridles first. ``alone``: the bridles that stay there.
-    ``rows``: those in which it is known; elsewhere it is NaN.
+    It counts where level 2 has no interval. ``low``: level 1 of all lines, the bridles first.
+    ``bridles``: how many. ``own_mean``: those whose mean is of level 2, from which the largest
+    load is off by less, nobody has measured how much. ``rows``: those in which it is known.
     """
-    known, bridles = rows[:, None] & alone, len(alone)
-
-    def about(load: LoadPrediction, mean: np.ndarray, factor: float) -> LoadPrediction:
-        std = np.full(mean.shape, np.nan)
-        std[:, :bridles] = np.where(known, factor * load_scale(mean[:, :bridles]), np.nan)
-        return replace(load, discrepancy=std)
-
     scatter, largest = STD_CALIBRATION * relative.std, MAXIMUM_CALIBRATION * relative.maximum
+    others = np.setdiff1d(np.arange(bridles), own_mean)
+
+    def about(name: str, factor: float, lines: np.ndarray) -> LoadPrediction:
+        mean = getattr(low, name).mean
+        std = np.full(mean.shape, np.nan)
+        std[np.ix_(rows, lines)] = factor * load_scale(mean[:, :bridles])[np.ix_(rows, lines)]
+        return replace(getattr(loads, name), discrepancy=std)
+
     return replace(
         loads,
-        std=about(loads.std, low.std.mean, scatter),
-        maximum_3h=about(loads.maximum_3h, low.maximum_3h.mean, largest),
-        damage_equivalent=about(loads.damage_equivalent, low.damage_equivalent.mean, scatter),
+        std=about("std", scatter, np.arange(bridles)),
+        maximum_3h=about("maximum_3h", largest, others),
+        damage_equivalent=about("damage_equivalent", scatter, np.arange(bridles)),
     )

@@ -444,12 +444,12 @@ def _with_level_2_in_waves(
         ratio = train_depth_ratio(low[:, models.cage.sensor_names.index(sensor)], windows)
         own_ratio = {} if ratio is None else {sensor: ratio}
         return replace(models, depth_ratio={**models.depth_ratio, **own_ratio})
-    line, errors = bridles[sensor], dict(models.line_errors)
-    if (off := window_errors(models.loads, line, windows)) is not None:
-        errors[sensor] = off
-    models = replace(models, line_errors=errors)
+    loads, line = models.loads, bridles[sensor]
+    off = window_errors(loads, line, windows)
+    if off is not None:
+        models = replace(models, line_errors={**models.line_errors, sensor: off})
     found = train_line_level_2(
-        models.loads,
+        loads,
         line,
         windows,
         model=models.upper.get(sensor),
