@@ -14,10 +14,10 @@ Series = Float[np.ndarray, " window"]
 
 LEAST_WINDOWS = 6  # of a shackle: an hour
 # Root mean square errors over the development truths, which count as so many shackles (decision 96)
-EXPECTED_STD, EXPECTED_MAXIMUM, EXPECTED_WEIGHT = 0.40, 0.58, 2.0
+EXPECTED_STD, EXPECTED_MAXIMUM, EXPECTED_WEIGHT = 0.43, 0.57, 5.0
 # Standard deviation over the root mean square, so that 1.96 of it hold 95 % of those cages' loads:
 # windows of half a day meet fewer seas than an interval has to hold
-STD_CALIBRATION, MAXIMUM_CALIBRATION = 1.4, 1.1
+STD_CALIBRATION, MAXIMUM_CALIBRATION = 1.25, 1.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
