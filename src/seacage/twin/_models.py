@@ -228,7 +228,9 @@ class Models:
         assumed = self.loads.assumes_tp(known)
         counts, bridles = inside & ~assumed, self.cage.bridle_count
         relative = relative_in_waves(self.line_errors.values())
+        calibrated = level > 1
         if relative is not None:
+            calibrated[:bridles] = True
             own_mean = [line for line, one in upper.items() if one.mean]
             loads = with_discrepancy(
                 loads, low, relative, bridles=bridles, own_mean=own_mean, rows=counts
@@ -241,8 +243,7 @@ class Models:
             "line_kinds": self.loads.kinds,
             "line": replace(loads, damage_per_year=np.where(counts[:, None], YEAR * rate, np.nan)),
             "line_level": level,
-            "line_calibrated": (level > 1)
-            | ((np.arange(len(level)) < bridles) & (relative is not None)),
+            "line_calibrated": calibrated,
             "line_in_domain": inside,
             "line_reason": reason,
             "line_tp_assumed": assumed,

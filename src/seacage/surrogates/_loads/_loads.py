@@ -117,7 +117,7 @@ class LoadPrediction(Rows):
                     np.where(exceeded > rate, middle, least),
                 )
             crossing[row] = most
-        decay, base = crossing[1] - crossing[0], self.base.mean(axis=0)
+        decay, base, about = crossing[1] - crossing[0], self.base.mean(axis=0), self.discrepancy
         size = np.maximum(crossing[0] + EULER * decay - base, 0.0) + self.offset
         return replace(
             self,
@@ -125,9 +125,7 @@ class LoadPrediction(Rows):
             size=size[None],
             log_std=self.log_std.mean(axis=0, keepdims=True),
             gumbel=(decay / np.maximum(size, 1e-9))[None],
-            discrepancy=None
-            if self.discrepancy is None
-            else self.discrepancy.mean(axis=0, keepdims=True),
+            discrepancy=None if about is None else about.mean(axis=0, keepdims=True),
         )
 
     def widened(self, edge: Self, rows: Bool[np.ndarray, " case"]) -> Self:

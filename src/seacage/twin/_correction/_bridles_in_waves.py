@@ -72,20 +72,20 @@ def with_discrepancy(
 
     It counts where level 2 has no interval. ``low``: level 1 of all lines, the bridles first.
     ``bridles``: how many. ``own_mean``: those whose mean is of level 2, from which the largest
-    load is off by less, nobody has measured how much. ``rows``: those in which it is known.
+    load is off by less; nobody has measured how much. ``rows``: those in which it is known.
     """
     scatter, largest = STD_CALIBRATION * relative.std, MAXIMUM_CALIBRATION * relative.maximum
-    others = np.setdiff1d(np.arange(bridles), own_mean)
+    every = np.arange(bridles)
 
     def about(name: str, factor: float, lines: np.ndarray) -> LoadPrediction:
         mean = getattr(low, name).mean
-        std = np.full(mean.shape, np.nan)
-        std[np.ix_(rows, lines)] = factor * load_scale(mean[:, :bridles])[np.ix_(rows, lines)]
+        std, some = np.full(mean.shape, np.nan), np.ix_(rows, lines)
+        std[some] = factor * load_scale(mean[:, :bridles])[some]
         return replace(getattr(loads, name), discrepancy=std)
 
     return replace(
         loads,
-        std=about("std", scatter, np.arange(bridles)),
-        maximum_3h=about("maximum_3h", largest, others),
-        damage_equivalent=about("damage_equivalent", scatter, np.arange(bridles)),
+        std=about("std", scatter, every),
+        maximum_3h=about("maximum_3h", largest, np.setdiff1d(every, own_mean)),
+        damage_equivalent=about("damage_equivalent", scatter, every),
     )

@@ -83,14 +83,9 @@ def window_errors(loads: LineLoads, line: int, windows: Windows) -> WindowErrors
     low, inside, _ = loads.predict(windows.metocean, spread=False)
     usable = inside & (low.std.mean[:, line] > 0.0)
     low, windows = low.rows(usable), windows.rows(usable)
-    return WindowErrors.of_windows(
-        low,
-        line,
-        loads.kinds.count("bridle"),
-        mean=windows.mean,
-        std=windows.std,
-        share=WINDOW_S / THREE_HOURS,
-    )
+    bridles, share = loads.kinds.count("bridle"), WINDOW_S / THREE_HOURS
+    measured = {"mean": windows.mean, "std": windows.std}
+    return WindowErrors.of_windows(low, line, bridles, share=share, **measured)
 
 
 def train_depth_ratio(low: Series, windows: Windows) -> LoadRatio | None:

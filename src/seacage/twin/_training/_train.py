@@ -31,11 +31,7 @@ from seacage.twin._profiles import Profiles
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
-from seacage.twin._training._line_levels import (
-    train_depth_ratio,
-    train_line_level_2,
-    window_errors,
-)
+from seacage.twin._training._line_levels import train_depth_ratio, train_line_level_2, window_errors
 from seacage.twin._training._loads import train_line_loads
 from seacage.twin._training._parted import train_parted_lines
 from seacage.twin._training._travel_time import fit_travel_time
