@@ -68,12 +68,16 @@ class Answer:
         All lines of the mooring, the bridles first; none where the twin did not learn loads in
         waves.
     line
-        Their loads in waves; None as above. At level 1 the intervals are NaN. At level 2 those
-        of mean and standard deviation hold the ones of ten minutes, of lines whose held-out
-        windows were enough to calibrate them. Where the waves are not known the standard
+        Their loads in waves; None as above. At level 2 the intervals of mean and standard
+        deviation hold the ones of ten minutes, of lines whose held-out windows were enough to
+        calibrate them. Other bridles have intervals where at least three shackles show how far
+        level 1 is off, other lines NaN. Where the waves are not known the standard
         deviation of the mean is its spread over the site's waves, at level 1.
     line_level
         Level of each line's loads: 2 where its shackle corrects any of them, else 1.
+    line_calibrated
+        Whether a line has intervals about its true loads: at level 2, and bridles at level 1 as
+        above.
     line_in_domain, line_reason
         Whether the water is inside what the loads were learned in, and one sentence where there
         are none or they are extrapolated, else "".
@@ -113,6 +117,7 @@ class Answer:
     line_kinds: tuple[str, ...]
     line: Loads | None
     line_level: Int[np.ndarray, " mooring_line"]
+    line_calibrated: Bool[np.ndarray, " mooring_line"]
     line_in_domain: Bool[np.ndarray, " case"]
     line_reason: tuple[str, ...]
     line_tp_assumed: Bool[np.ndarray, " case"]
@@ -161,14 +166,14 @@ class Answer:
         )
 
     def maximum_interval(self) -> Interval:
-        """Interval of the lines' largest loads of three hours that holds 95 % [N]; NaN at level 1.
+        """Interval of the lines' largest loads of three hours that holds 95 % [N]; NaN without.
 
-        Computed for the lines of level 2 alone, as it takes longer than all the means.
+        Computed for the lines that have one alone, as it takes longer than all the means.
         """
         ends = np.full((2, len(self), len(self.line_names)), np.nan)
-        upper = np.flatnonzero(self.line_level > 1)
-        if self.line is not None and len(upper):
-            ends[:, :, upper] = self.line.maximum_3h.lines(upper).interval(0.95)
+        known = np.flatnonzero(self.line_calibrated)
+        if self.line is not None and len(known):
+            ends[:, :, known] = self.line.maximum_3h.lines(known).interval(0.95)
         return ends[0], ends[1]
 
     def bridle_interval(self) -> Interval:

@@ -25,9 +25,12 @@ from seacage.twin._correction import (
     Correction,
     Corrections,
     NetCorrection,
+    WindowErrors,
     discrepancy_std,
     relative_discrepancy,
+    relative_in_waves,
     volume_std,
+    with_discrepancy,
 )
 from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
@@ -78,6 +81,8 @@ class Models:
     line_upper: Mapping[str, LineCorrection] = field(default_factory=dict[str, LineCorrection])
     # And of the standard deviation of depths, by the name of the sensor
     depth_ratio: Mapping[str, LoadRatio] = field(default_factory=dict[str, LoadRatio])
+    # Errors of level 1 in the windows of each shackle
+    line_errors: Mapping[str, WindowErrors] = field(default_factory=dict[str, WindowErrors])
 
     @cached_property
     def corrections(self) -> Mapping[int, Correction]:
@@ -206,29 +211,39 @@ class Models:
                 "line_kinds": (),
                 "line": None,
                 "line_level": np.zeros(0, dtype=int),
+                "line_calibrated": np.zeros(0, dtype=bool),
                 "line_in_domain": np.zeros_like(valid),
                 "line_reason": ("",) * len(valid),
                 "line_tp_assumed": np.zeros_like(valid),
             }
         known = Metocean.from_table(np.where(valid[:, None], water.table, np.nan))
-        loads, inside, reason = self.loads.predict(known, spread=False)
+        low, inside, reason = self.loads.predict(known, spread=False)
         motion = self.loads.node_motion(known)
         shackles = {one.name: one.bridle for one in self.cage.shackles}
         upper = {shackles[name]: one for name, one in self.line_upper.items()}
         level = np.ones(len(self.loads.names), dtype=int)
         level[list(upper)] = 2
-        loads = correct_lines(loads, upper, known, bridle)
+        loads = correct_lines(low, upper, known, bridle)
         rate = self.lines.damage_rate(loads.damage_equivalent.mean)
         assumed = self.loads.assumes_tp(known)
-        counts = (inside & ~assumed)[:, None]
+        counts, bridles = inside & ~assumed, self.cage.bridle_count
+        relative = relative_in_waves(self.line_errors.values())
+        calibrated = level > 1
+        if relative is not None:
+            calibrated[:bridles] = True
+            own_mean = [line for line, one in upper.items() if one.mean]
+            loads = with_discrepancy(
+                loads, low, relative, bridles=bridles, own_mean=own_mean, rows=counts
+            )
         return {
             "node_motion": motion,
             "depth_std": self.depth_std(known, motion),
             "depth_std_level": 1 + np.array([one.name in self.depth_ratio for one in sensors], int),
             "line_names": self.loads.names,
             "line_kinds": self.loads.kinds,
-            "line": replace(loads, damage_per_year=np.where(counts, YEAR * rate, np.nan)),
+            "line": replace(loads, damage_per_year=np.where(counts[:, None], YEAR * rate, np.nan)),
             "line_level": level,
+            "line_calibrated": calibrated,
             "line_in_domain": inside,
             "line_reason": reason,
             "line_tp_assumed": assumed,

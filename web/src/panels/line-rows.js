@@ -37,10 +37,14 @@ export function windowNote(name, state) {
     // Also where there are numbers, as of a sea outside the training domain.
     state.lines_reason || (known(line?.maximum_3h_kn.mean) ? "" : state.reason),
     line && state.tp_assumed ? text("line.tpAssumed") : "",
-    line && line.level <= 1 && known(line.maximum_3h_kn.mean) ? text("line.levelOne") : "",
+    line && line.level <= 1 && known(line.maximum_3h_kn.mean) ? levelOne(line) : "",
   ];
   return words.filter(Boolean).join(" ");
 }
+
+/** How good numbers of level 1 are: a bridle may have an interval by shackles on others. */
+const levelOne = ({ maximum_3h_kn: largest }) =>
+  (known(largest.lower) ? text("line.byOthers") : text("line.levelOne"));
 
 /** Damage: of a year of this sea, and what has been counted since when. */
 export function wearRows(name, state) {

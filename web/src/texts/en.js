@@ -204,7 +204,7 @@ export default {
   lines: {
     caption: "All lines in waves: mean, standard deviation, and the largest tension expected in three hours",
     heads: { line: "Line", mean: "Mean", std: "Std", maximum: "Largest in 3 h" },
-    about: "In {unit}, of half an hour of this sea. The largest is the one expected in three hours. At level 1, simulation alone, no interval of it is known at sea.",
+    about: "In {unit}, of half an hour of this sea. The largest is the one expected in three hours. At level 1 it is simulation alone; bridles have an interval where shackles on others show how far simulations are off.",
     most: "In waves: {name}, {load} expected in 3 hours",
     share: "In waves: {name}, {load} expected in 3 hours, {share} of capacity",
     none: "In waves: no loads. {reason}",
@@ -221,6 +221,7 @@ export default {
     in3h: "expected in 3 hours",
     tpAssumed: "The waves’ period is not known; it is taken from their height.",
     levelOne: "Simulation alone: no interval is known at sea.",
+    byOthers: "Simulation alone, with an interval as wide as it is off at the shackles.",
     wear: "Damage",
     perYear: "A year of this sea",
     soFar: "So far",

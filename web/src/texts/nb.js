@@ -201,7 +201,7 @@ export default {
   lines: {
     caption: "Alle liner i bølger: middel, standardavvik og det største strekket som ventes på tre timer",
     heads: { line: "Line", mean: "Middel", std: "St.avvik", maximum: "Største på 3 t" },
-    about: "I {unit}, for en halvtime av denne sjøen. Det største er det som ventes på tre timer. På nivå 1, bare simulering, er ikke noe intervall for det kjent i sjøen.",
+    about: "I {unit}, for en halvtime av denne sjøen. Det største er det som ventes på tre timer. På nivå 1 er det bare simulering; haneføtter har et intervall der sjakler på andre viser hvor mye simuleringene bommer.",
     most: "I bølger: {name}, {load} ventet på 3 timer",
     share: "I bølger: {name}, {load} ventet på 3 timer, {share} av kapasiteten",
     none: "I bølger: ingen laster. {reason}",
@@ -218,6 +218,7 @@ export default {
     in3h: "ventet på 3 timer",
     tpAssumed: "Bølgenes periode er ikke kjent; den er anslått ut fra høyden.",
     levelOne: "Bare simulering: Ikke noe intervall er kjent i sjøen.",
+    byOthers: "Bare simulering; intervallet er så bredt som den bommer ved sjaklene.",
     wear: "Utmatting",
     perYear: "Et år i denne sjøen",
     soFar: "Hittil",

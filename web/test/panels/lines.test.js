@@ -50,6 +50,9 @@ test("the panel has the window's statistics, with an interval where there is one
   assert.deepEqual(values(windowRows("anchor-2", interval)), ["60.0 kN", "5.0 kN", "81.0 kN ± 6.0"]);
   assert.match(windowNote("anchor-2", state), /no interval/);
   assert.equal(windowNote("anchor-2", interval), "");
+  const byOthers = withLine({ maximum_3h_kn: { mean: 81, lower: 60, upper: 102 } });
+  assert.deepEqual(values(windowRows("anchor-2", byOthers)), ["60.0 kN", "5.0 kN", "81.0 kN ± 21.0"]);
+  assert.match(windowNote("anchor-2", byOthers), /off at the shackles/);
 });
 
 test("without waves the panel gives the reason, and the mean's spread where that is known", () => {

@@ -42,14 +42,15 @@ class BridleState(AbstractAnswer):
 class LineState(AbstractAnswer):
     """A line's load over half an hour of this sea, and its largest in three hours of it.
 
-    ``mean`` of ``maximum_3h_kn`` is the expected one; ``utilisation`` is its share of the line's
-    capacity, null where the cage's file gives none. Where the waves' height or direction is not
-    known the mean alone is a number, over the site's waves, about which it has the standard
-    deviation ``mean_spread_kn``. Where the sea is outside what the loads were learned in they are
-    extrapolated. ``lines_reason`` says either. ``damage_per_year`` is the share of the line's life
-    that a year of this sea uses up, null where a number of the waves is not known, outside what
-    was learned, and without a T-N curve. ``damage`` is what was used up since its count began,
-    over the hours with an answer; hours without one are not filled.
+    ``mean`` of ``maximum_3h_kn`` is the expected one; the interval holds the realised one, and is
+    null at level 1 but of bridles where three shackles and more were read in waves. ``utilisation``
+    is its share of the line's capacity, null where the cage's file gives none. Where the waves'
+    height or direction is not known the mean alone is a number, over the site's waves, about which
+    it has the standard deviation ``mean_spread_kn``. Where the sea is outside what the loads were
+    learned in they are extrapolated. ``lines_reason`` says either. ``damage_per_year`` is the share
+    of the line's life that a year of this sea uses up, null where a number of the waves is not
+    known, outside what was learned, and without a T-N curve. ``damage`` is what was used up since
+    its count began, over the hours with an answer; hours without one are not filled.
     """
 
     name: str

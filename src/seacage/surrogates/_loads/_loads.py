@@ -56,6 +56,9 @@ class LoadPrediction(Rows):
     # Scale of the largest value's scatter over the rest; 0 for what is no largest value [-]
     gumbel: CaseLine
     offset: float  # taken from the sum; no load is below its base [N]
+    # Where ``log_std`` is NaN, standard deviation of a normal distribution about the mean; NaN or
+    # None where that is not known either [N]
+    discrepancy: CaseLine | None = None
 
     @property
     def mean(self) -> CaseLine:
@@ -69,17 +72,23 @@ class LoadPrediction(Rows):
         square = np.expm1(self.log_std**2)
         scatter = self.gumbel**2 * math.pi**2 / 6.0
         size = self.size * np.exp(0.5 * self.log_std**2)
-        return size * np.sqrt(square + scatter * (1.0 + square))
+        std = size * np.sqrt(square + scatter * (1.0 + square))
+        return std if self.discrepancy is None else np.where(np.isnan(std), self.discrepancy, std)
 
     def interval(self, level: float) -> tuple[CaseLine, CaseLine]:
         """Bounds that hold a share of the loads, the same share beyond either [N]."""
         lower, upper = (self._quantile(end) for end in interval_ends(level))
-        return lower, upper
+        if self.discrepancy is None:
+            return lower, upper
+        ends = Prediction(mean=self.mean, std=self.discrepancy).interval(level)
+        about, plain = np.maximum(ends, 0.0), np.isnan(self.log_std)
+        return np.where(plain, about[0], lower), np.where(plain, about[1], upper)
 
     def lines(self, some: Int[np.ndarray, " line"]) -> Self:
         """The loads of some lines."""
-        names = ("base", "size", "log_std", "gumbel")
-        return replace(self, **{name: getattr(self, name)[:, some] for name in names})
+        names = ("base", "size", "log_std", "gumbel", "discrepancy")
+        known = {name: one for name in names if (one := getattr(self, name)) is not None}
+        return replace(self, **{name: one[:, some] for name, one in known.items()})
 
     def of_share(self, share: float) -> Self:
         """Largest load of a share of the three hours, in each row: Gumbel with a lower mode."""
@@ -108,7 +117,7 @@ class LoadPrediction(Rows):
                     np.where(exceeded > rate, middle, least),
                 )
             crossing[row] = most
-        decay, base = crossing[1] - crossing[0], self.base.mean(axis=0)
+        decay, base, about = crossing[1] - crossing[0], self.base.mean(axis=0), self.discrepancy
         size = np.maximum(crossing[0] + EULER * decay - base, 0.0) + self.offset
         return replace(
             self,
@@ -116,6 +125,7 @@ class LoadPrediction(Rows):
             size=size[None],
             log_std=self.log_std.mean(axis=0, keepdims=True),
             gumbel=(decay / np.maximum(size, 1e-9))[None],
+            discrepancy=None if about is None else about.mean(axis=0, keepdims=True),
         )
 
     def widened(self, edge: Self, rows: Bool[np.ndarray, " case"]) -> Self:

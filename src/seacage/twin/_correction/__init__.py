@@ -1,6 +1,11 @@
 """Level 2: sensors corrected by their readings, and what these tell of bridles and net."""
 
 from seacage.twin._correction._bridles import discrepancy_std, relative_discrepancy
+from seacage.twin._correction._bridles_in_waves import (
+    WindowErrors,
+    relative_in_waves,
+    with_discrepancy,
+)
 from seacage.twin._correction._net import LEAST_SENSORS, NetCorrection, volume_std
 from seacage.twin._correction._sensor import (
     DAY,
@@ -20,7 +25,10 @@ __all__ = [
     "FixedPrediction",
     "NetCorrection",
     "Spread",
+    "WindowErrors",
     "discrepancy_std",
     "relative_discrepancy",
+    "relative_in_waves",
     "volume_std",
+    "with_discrepancy",
 ]

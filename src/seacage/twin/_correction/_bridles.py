@@ -40,13 +40,17 @@ def relative_discrepancy(
     if len(known) < LEAST_SHACKLES:
         return None
     squares = [_mean_square(line, model, bridles) for line, model in known]
-    expected = EXPECTED_WEIGHT * EXPECTED**2
-    return math.sqrt((expected + sum(squares)) / (EXPECTED_WEIGHT + len(squares)))
+    return pool(squares, EXPECTED, EXPECTED_WEIGHT)
+
+
+def pool(squares: Sequence[float], expected: float, weight: float) -> float:
+    """Root of the mean of squares, and of an expected one that counts as so many."""
+    return math.sqrt((weight * expected**2 + sum(squares)) / (weight + len(squares)))
 
 
 def discrepancy_std(low: Prediction, relative: float) -> PerLine:
     """Standard deviation of the true loads about level 1, with that of the emulator [N]."""
-    return np.hypot(low.std, CALIBRATION * relative * _scale(low.mean))
+    return np.hypot(low.std, CALIBRATION * relative * load_scale(low.mean))
 
 
 def _mean_square(line: int, model: Correction, bridles: Predicts) -> float:
@@ -56,12 +60,19 @@ def _mean_square(line: int, model: Correction, bridles: Predicts) -> float:
     low = bridles.predict(x)
     own = Prediction(mean=low.mean[:, line], std=low.std[:, line])
     latent = model.latent(x, own)
-    scale = _scale(low.mean)[:, line]
+    error = np.hypot(latent.mean - own.mean, latent.std)
+    return mean_square(error, low.mean, line)
+
+
+def mean_square(error: Float[np.ndarray, " case"], low: PerLine, line: int) -> float:
+    """Mean square of a bridle's errors over the scale of its loads [-]."""
+    scale = load_scale(low)[:, line]
     # Where all lines hang slack in the simulation, a newton is not many times nothing.
     scale = np.maximum(scale, max(LEAST_SCALE * float(np.mean(scale)), 1.0))
-    return float(np.mean(((latent.mean - own.mean) ** 2 + latent.std**2) / scale**2))
+    return float(np.mean((error / scale) ** 2))
 
 
-def _scale(low: PerLine) -> PerLine:
+def load_scale(low: PerLine) -> PerLine:
+    """Scale of each bridle's error: mostly its own load, partly the mean of all [N]."""
     load = np.maximum(low, 0.0)
     return (1.0 - SHARED) * load + SHARED * load.mean(axis=1, keepdims=True)

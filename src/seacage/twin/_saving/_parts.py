@@ -11,7 +11,7 @@ from seacage import surrogates
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.records import check_stream
-from seacage.twin._correction import Correction, Spread
+from seacage.twin._correction import Correction, Spread, WindowErrors
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
 from seacage.twin._lines._line_correction import LineCorrection
@@ -40,7 +40,7 @@ _ERRORS = ("current_velocity", "ring", "rest")
 _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector", "travel_time")
 _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
-_OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio")
+_OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio", "line_errors")
 Kind = TypeVar(
     "Kind",
     surrogates.FittedGaussianProcess,
@@ -88,6 +88,7 @@ class Header:
     depth_ratio: Mapping[str, surrogates.LoadRatio] = field(
         default_factory=dict[str, surrogates.LoadRatio]
     )
+    line_errors: Mapping[str, WindowErrors] = field(default_factory=dict[str, WindowErrors])
     parted: tuple[PartedHeader, ...] = ()
     # Of level 2 against level 1, where that is not all
     weights: Mapping[str, float] = field(default_factory=dict[str, float])

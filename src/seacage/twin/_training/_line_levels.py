@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.surrogates import LoadPrediction, LoadRatio, conformal_factor, is_gain
-from seacage.twin._correction import Correction
+from seacage.twin._correction import Correction, WindowErrors
 from seacage.twin._lines._line_correction import LineCorrection, load_variables
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._pairs import Pairs
@@ -76,6 +76,16 @@ def train_line_level_2(
         damage=damage,
         maximum_log_sd=_maximum_spread(windows, largest, mean, np.exp(of_peak), error),
     )
+
+
+def window_errors(loads: LineLoads, line: int, windows: Windows) -> WindowErrors | None:
+    """Errors of a line's level 1 in its shackle's windows; None where these are too few."""
+    low, inside, _ = loads.predict(windows.metocean, spread=False)
+    usable = inside & (low.std.mean[:, line] > 0.0)
+    low, windows = low.rows(usable), windows.rows(usable)
+    bridles, share = loads.kinds.count("bridle"), WINDOW_S / THREE_HOURS
+    measured = {"mean": windows.mean, "std": windows.std}
+    return WindowErrors.of_windows(low, line, bridles, share=share, **measured)
 
 
 def train_depth_ratio(low: Series, windows: Windows) -> LoadRatio | None:

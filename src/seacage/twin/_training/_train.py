@@ -31,7 +31,7 @@ from seacage.twin._profiles import Profiles
 from seacage.twin._provenance import Provenance, TrainingWindow
 from seacage.twin._training._calibration import calibrate
 from seacage.twin._training._data import CageTraining, SensorTraining, Training
-from seacage.twin._training._line_levels import train_depth_ratio, train_line_level_2
+from seacage.twin._training._line_levels import train_depth_ratio, train_line_level_2, window_errors
 from seacage.twin._training._loads import train_line_loads
 from seacage.twin._training._parted import train_parted_lines
 from seacage.twin._training._travel_time import fit_travel_time
@@ -273,6 +273,7 @@ def _from_base(cage: Cage, base: Twin, training: Training) -> Twin:
             upper=upper,
             line_upper=stay(models.line_upper),
             depth_ratio=stay(models.depth_ratio),
+            line_errors=stay(models.line_errors),
         ),
         provenance=replace(
             provenance,
@@ -439,9 +440,13 @@ def _with_level_2_in_waves(
         ratio = train_depth_ratio(low[:, models.cage.sensor_names.index(sensor)], windows)
         own_ratio = {} if ratio is None else {sensor: ratio}
         return replace(models, depth_ratio={**models.depth_ratio, **own_ratio})
+    loads, line = models.loads, bridles[sensor]
+    off = window_errors(loads, line, windows)
+    if off is not None:
+        models = replace(models, line_errors={**models.line_errors, sensor: off})
     found = train_line_level_2(
-        models.loads,
-        bridles[sensor],
+        loads,
+        line,
         windows,
         model=models.upper.get(sensor),
         selected=own.selected,

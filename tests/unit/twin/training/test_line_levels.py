@@ -73,6 +73,13 @@ def test_the_correction_says_how_fast_its_shackle_is():
     assert found.rate == "a reading every 1 s, 6.0 per peak period"
 
 
+def test_the_errors_of_level_1_are_kept_of_every_shackle_in_waves():
+    (off,), (right,) = (corrected(one).models.line_errors.values() for one in (1.4, 1.0))
+    assert off.std == pytest.approx(0.4, abs=0.15)  # a window's scatter, and a scale near its own
+    assert right.std < 0.5 * off.std
+    assert right.maximum < off.maximum < 0.2  # of some 40 kN, of which 6 are by waves
+
+
 def test_where_level_1_is_right_nothing_is_corrected():
     found = corrected(1.0).models.line_upper.get("shackle-2")
     assert found is None or (abs(found.std.constant) < 0.03 and found.std.variable == "")
