@@ -44,15 +44,17 @@ def field_of(
     *,
     name: str,
     profile: Literal["buoy", "cage"] | None = None,
+    hidden: TruthParameters | None = None,
 ) -> VirtualField:
     """A settled field of 50 days, kept in the output folder under a name.
 
-    ``profile``: where an ADCP is; None for none.
+    ``profile``: where an ADCP is; None for none. ``hidden``: None for those of the number.
     """
+    own = hidden or TruthParameters.of_family(number, water=water, unseal=given.unseal)
     return virtual_field(
         cage,
         generated_current(number, start=START, days=DAYS),
-        hidden=TruthParameters.of_family(number, water=water, unseal=given.unseal),
+        hidden=own,
         seed=number,
         method="settle",
         profile=profile,

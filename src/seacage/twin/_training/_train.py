@@ -13,7 +13,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import InputError, NonsenseError, Origin, Progress, no_progress
 from seacage.ocean import over_depth
-from seacage.records import CampaignRecord, FieldRecord, bin_keys, current_bins, moment
+from seacage.records import CampaignRecord, FieldRecord, bin_keys, current_bins, instant, moment
 from seacage.surrogates import (
     Domain,
     FittedGaussianProcess,
@@ -23,6 +23,7 @@ from seacage.surrogates import (
     window_design,
 )
 from seacage.twin._correction import Correction
+from seacage.twin._current_change import CurrentChange
 from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
@@ -133,6 +134,10 @@ def train(
         if name not in {**level_1.models.line_upper, **level_1.models.depth_ratio}:
             models = _with_level_2_in_waves(models, data, field, name, travel_time)
         report(name, done)
+    current_change = level_1.current_change
+    if not level_1.models.upper and windows:
+        until = instant(max(one.end for one in windows.values()))
+        current_change = CurrentChange.of_buoy(field.buoy.rows(field.buoy.time < until))
     provenance = replace(
         provenance,
         origin=provenance.origin if windows == provenance.training_windows else field.origin,
@@ -141,7 +146,12 @@ def train(
     )
     buoy = base.buoy if base else field.buoy.stream
     return replace(
-        level_1, models=models, provenance=provenance, buoy=buoy, travel_time=travel_time
+        level_1,
+        models=models,
+        provenance=provenance,
+        buoy=buoy,
+        travel_time=travel_time,
+        current_change=current_change,
     )
 
 
