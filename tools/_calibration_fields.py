@@ -1,66 +1,79 @@
 """What a trained twin answers on fields of the family's cages, beside the truth, as arrays."""
 
 import argparse
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
-from _family_fields import START, field_of, scored_times, values_at
+from _family_fields import START, Water, field_of, scored_times, values_at
 from score_net import true_nets
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, VirtualField
 from seacage.records import Record
 from seacage.surrogates import AdaptiveConformal
-from seacage.twin import Metocean, Training, Twin, train
+from seacage.twin import Answer, Metocean, Training, Twin, train
 
 EXTRA = "extra-"
 """Before the names of the shackles that the twin does not see."""
-AGES_MIN = (0.0, 10.0, 30.0, 60.0)  # of the buoy's newest sample
-NODE_TIMES, NODES = 12, 8  # every twelfth half hour, and every eighth node
-MINUTE, DAY = np.timedelta64(60, "s"), np.timedelta64(86400, "s")
+AGES_MIN = (0.0, 10.0, 30.0, 60.0)  # least, of the buoy's newest sample
+NODE_TIMES, NODES = 12, 8  # nodes are scored every twelfth half hour, and every eighth of them
+DAY = np.timedelta64(86400, "s")
 # Growth that begins where the depth sensors' training ends, is half done ten days later, and is
 # never cleaned
 HEAVY = {"age_days": 0.0, "cleaned_days": (), "half_grown_days": 35.0, "growth_days": 4.0}
-Water = Literal["tame", "coastal"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Outputs:
+    """Of several outputs of one field: the truth, and answers by age of the input."""
+
+    true: np.ndarray  # (time, output)
+    mean: np.ndarray  # (age, time, output)
+    std: np.ndarray  # as if the input were new
+    late: np.ndarray  # as it is
+    trained: np.ndarray  # day on which the training ended that the output rests on
+    fastest: np.ndarray  # current in it [m/s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answers:
-    """Of one field: the truth, means and standard deviations, with the age of the input first."""
+    """Of one field."""
 
     day: np.ndarray  # of the field, (time)
-    velocity: np.ndarray  # of the current at the cage by the twin [m/s], (age, time, 2)
+    velocity: np.ndarray  # of the current at the cage by the twin [m/s], (time, 2)
     growth: np.ndarray  # true [-], (time)
     factor: np.ndarray  # online, of the depth sensors, (time, depth)
-    trained: np.ndarray  # day on which each sensor's training ended; NaN without level 2
-    fastest: np.ndarray  # current in each sensor's training [m/s]
-    true: np.ndarray  # readings without errors, (time, sensor)
-    mean: np.ndarray  # (age, time, sensor)
-    std: np.ndarray
-    steepness: np.ndarray  # of each sensor's level 1 over the current, (age, time, sensor)
-    bridle_true: np.ndarray  # (time, line)
-    bridle_mean: np.ndarray  # (age, time, line)
-    bridle_std: np.ndarray
-    bridle_level: np.ndarray
-    node_true: np.ndarray  # at every twelfth time, (time, node, 3)
-    node_mean: np.ndarray
-    node_std: np.ndarray
-    node_size: np.ndarray  # displacement from still water [m], (time, node)
-    volume: np.ndarray  # true, mean, standard deviation, (3, time)
-    buoy_change: np.ndarray  # sd of a component's change in 6, 12, 30, 60 and 120 min [m/s]
+    size: np.ndarray  # displacement of the nodes by the twin [m], (time, node)
+    groups: dict[str, Outputs]
+
+    def at_nets(self) -> "Answers":
+        """Return the same at the times of the nets."""
+        some = slice(None, None, NODE_TIMES)
+        whole = ("day", "velocity", "growth", "factor")
+        return replace(self, **{name: getattr(self, name)[some] for name in whole})
 
     @classmethod
     def read(cls, path: Path) -> "Answers":
         """Read what ``write`` wrote."""
         with np.load(path) as stored:
-            return cls(**stored)
+            own = {name: stored[name] for name in stored.files if ":" not in name}
+            groups: dict[str, dict[str, np.ndarray]] = {}
+            for name in stored.files:
+                if ":" in name:
+                    group, field = name.split(":")
+                    groups.setdefault(group, {})[field] = stored[name]
+        return cls(groups={name: Outputs(**one) for name, one in groups.items()}, **own)
 
     def write(self, path: Path) -> None:
         """Keep the arrays."""
-        np.savez_compressed(path, **{one.name: getattr(self, one.name) for one in fields(self)})
+        own = {one.name: getattr(self, one.name) for one in fields(self) if one.name != "groups"}
+        of_groups = {
+            f"{name}:{one.name}": getattr(group, one.name)
+            for name, group in self.groups.items()
+            for one in fields(group)
+        }
+        np.savez_compressed(path, **own, **of_groups)
 
 
 def with_every_shackle(cage: Cage) -> Cage:
@@ -71,10 +84,8 @@ def with_every_shackle(cage: Cage) -> Cage:
     return replace(cage, shackle=(*cage.shackle, *extra))
 
 
-def answers_of(
-    base: Twin, number: int, given: argparse.Namespace, *, heavy: bool = False
-) -> Answers:
-    """Train on one field, and answer; kept in the output folder."""
+def answers_of(base: Twin, number: int, given: argparse.Namespace, *, heavy: bool) -> Answers:
+    """Train on one field, and answer; twin and answers are kept in the output folder."""
     water: Water = "tame" if number % 2 else "coastal"
     kept = given.out / f"truth-{number}{'-heavy' * heavy}.npz"
     if not kept.is_file():
@@ -85,59 +96,94 @@ def answers_of(
         field = field_of(full, number, water, given, name=folder, hidden=hidden)
         record = field.record
         seen = {k: one for k, one in record.sensors.items() if not k.startswith(EXTRA)}
-        record = replace(record, sensors=seen)
-        twin = train(base.cage, None, record, base=base, training=Training(restarts=1))
-        twin.write(kept.with_suffix(".twin"))
+        record, stored = replace(record, sensors=seen), kept.with_suffix(".twin")
+        if not stored.is_dir():
+            train(base.cage, None, record, base=base, training=Training(restarts=1)).write(stored)
         nets = scored_times(field.truth.buoy)[::NODE_TIMES]
         net = true_nets(full, hidden, field.truth.buoy, number, nets, given.out / folder)
-        _answers(twin, replace(field, record=record), full, hidden, net).write(kept)
+        _answers(Twin.read(stored), replace(field, record=record), full, hidden, net).write(kept)
     return Answers.read(kept)
 
 
 def _answers(
     twin: Twin, field: VirtualField, full: Cage, hidden: TruthParameters, net: np.ndarray
 ) -> Answers:
-    buoy, truth = field.record.buoy, field.truth
-    time = scored_times(buoy)
-    waters = [held_water(twin, buoy, time, age) for age in AGES_MIN]
-    every = [twin.predict(one).without_nodes() for one in waters]
-    at_nets = twin.predict(waters[0].rows(np.arange(0, len(time), NODE_TIMES)))
+    time, truth = scored_times(field.record.buoy), field.truth
+    waters = [held_water(twin, field.record.buoy, time, age) for age in AGES_MIN]
+    late = [twin.predict(one).without_nodes() for one in waters]
+    new = [twin.predict(_new(one)).without_nodes() for one in waters]
+    some = np.arange(0, len(time), NODE_TIMES)
+    late_nets = [twin.predict(one.rows(some)) for one in waters]
+    new_nets = [twin.predict(_new(one.rows(some))) for one in waters]
     day = (time - np.datetime64(START.replace(tzinfo=None))) / DAY
-    windows = twin.provenance.training_windows
-    trained, fastest = np.full((2, len(twin.sensor_names)), np.nan)
-    for column, model in twin.models.corrections.items():
-        end = windows[twin.sensor_names[column]].end
-        trained[column] = (end - START).total_seconds() / 86400.0
-        fastest[column] = model.domain.upper[0]
-    bridle_true = np.full((len(time), full.bridle_count), np.nan)
+    ends, fastest = _training(twin)
+    depths = len(twin.cage.depth_sensors)
+    sensors = np.stack([values_at(truth.sensors[k], time) for k in twin.sensor_names], axis=1)
+    bridles = np.full((len(time), full.bridle_count), np.nan)
     for shackle in full.shackles:
-        bridle_true[:, shackle.bridle] = values_at(truth.sensors[shackle.name], time)
-    still = twin.models.net.still if twin.models.net else at_nets.node_position[0]
-    mean = at_nets.node_position
-    volume = [full.volume(net) / twin.models.still_volume]
-    volume += [at_nets.volume_fraction, at_nets.volume_std]
+        bridles[:, shackle.bridle] = values_at(truth.sensors[shackle.name], time)
+    alone = late[0].bridle_level == 1
+    still = twin.models.net.still if twin.models.net else 0.0
+
+    def put_together(
+        true: np.ndarray, answers: tuple[list[Answer], list[Answer]], name: str, columns: slice
+    ) -> Outputs:
+        first, second = ([_moments(one, name) for one in each] for each in answers)
+        mean = np.stack([one[0] for one in first])
+        std, wide = (np.stack([one[1] for one in each]) for each in (second, first))
+        own = columns if name == "sensor" else slice(depths) if name == "node" else slice(depths, 8)
+        end, most = (np.resize(one[own], true.shape[1]) for one in (ends, fastest))
+        return Outputs(true=true, mean=mean, std=std, late=wide, trained=end, fastest=most)
+
+    both, nets = (late, new), (late_nets, new_nets)
+    sensor = put_together(sensors, both, "sensor", slice(None))
+    volume = full.volume(net) / twin.models.still_volume
+    mean = late_nets[0].node_position
     return Answers(
         day=day,
-        velocity=np.stack([one.current_velocity for one in waters]),
+        velocity=waters[0].current_velocity,
         growth=hidden.fouling.grown(day),
         factor=_factors(twin, field, time),
-        trained=trained,
-        fastest=fastest,
-        true=np.stack([values_at(truth.sensors[k], time) for k in twin.sensor_names], axis=1),
-        mean=np.stack([one.sensor.mean for one in every]),
-        std=np.stack([one.sensor.std for one in every]),
-        steepness=np.stack([twin.models.steepness(one) for one in waters]),
-        bridle_true=bridle_true,
-        bridle_mean=np.stack([one.bridle_tension.mean for one in every]),
-        bridle_std=np.stack([one.bridle_tension.std for one in every]),
-        bridle_level=every[0].bridle_level,
-        node_true=net[:, ::NODES],
-        node_mean=mean[:, ::NODES],
-        node_std=at_nets.node_std[:, ::NODES],
-        node_size=np.linalg.norm(mean - still, axis=2)[:, ::NODES],
-        volume=np.stack(volume),
-        buoy_change=np.array(list(_changes(buoy))),
+        size=np.linalg.norm(mean - still, axis=2)[:, ::NODES],
+        groups={
+            "depths": _columns(sensor, np.arange(depths)),
+            "shackles": _columns(sensor, np.arange(depths, len(twin.sensor_names))),
+            "bridles of level 1": _columns(
+                put_together(bridles, both, "bridle", slice(None)), np.flatnonzero(alone)
+            ),
+            "nodes": put_together(net[:, ::NODES].reshape(len(net), -1), nets, "node", slice(None)),
+            "volume": put_together(volume[:, None], nets, "volume", slice(None)),
+        },
     )
+
+
+def _new(water: Metocean) -> Metocean:
+    return replace(water, current_change=None)
+
+
+def _moments(answer: Answer, name: str) -> tuple[np.ndarray, np.ndarray]:
+    if name == "sensor":
+        return answer.sensor.mean, answer.sensor.std
+    if name == "bridle":
+        return answer.bridle_tension.mean, answer.bridle_tension.std
+    if name == "volume":
+        return answer.volume_fraction[:, None], answer.volume_std[:, None]
+    mean, std = (one[:, ::NODES] for one in (answer.node_position, answer.node_std))
+    return mean.reshape(len(mean), -1), std.reshape(len(std), -1)
+
+
+def _columns(one: Outputs, some: np.ndarray) -> Outputs:
+    return Outputs(**{f.name: getattr(one, f.name)[..., some] for f in fields(one)})
+
+
+def _training(twin: Twin) -> tuple[np.ndarray, np.ndarray]:
+    """Day on which each sensor's training ended, and its fastest current; NaN without level 2."""
+    ends, fastest = np.full((2, len(twin.sensor_names)), np.nan)
+    for column, model in twin.models.corrections.items():
+        end = twin.provenance.training_windows[twin.sensor_names[column]].end
+        ends[column] = (end - START).total_seconds() / 86400.0
+        fastest[column] = model.domain.upper[0]
+    return ends, fastest
 
 
 def held_water(twin: Twin, buoy: Record, time: np.ndarray, age_min: float) -> Metocean:
@@ -157,14 +203,6 @@ def held_water(twin: Twin, buoy: Record, time: np.ndarray, age_min: float) -> Me
     return replace(Metocean.without_waves(known), current_change=np.vstack(change))
 
 
-def _changes(buoy: Record) -> Iterator[float]:
-    velocity = Metocean.of_record(buoy).current_velocity
-    step = (buoy.time[1] - buoy.time[0]) / MINUTE
-    for minutes in (12, 24, 36, 60, 120):
-        rows = round(minutes / step)
-        yield float(np.sqrt(np.mean((velocity[rows:] - velocity[:-rows]) ** 2)))
-
-
 def _factors(twin: Twin, field: VirtualField, time: np.ndarray) -> np.ndarray:
     """Factor that the live loop has on each depth sensor's interval at some times."""
     found: list[np.ndarray] = []
@@ -173,9 +211,8 @@ def _factors(twin: Twin, field: VirtualField, time: np.ndarray) -> np.ndarray:
     answer = twin.predict(twin.travel_time.water_at(buoy, late)).without_nodes().sensor
     rule = AdaptiveConformal(rate=twin.timeouts.adapt_rate)
     for column, sensor in enumerate(twin.cage.depth_sensors):
-        record: Mapping[str, np.ndarray] = field.record.sensors[sensor.name].values
-        ((key, values),) = record.items()
         series = field.record.sensors[sensor.name]
+        ((key, values),) = series.values.items()
         rows = np.flatnonzero(series.usable(key) & (series.time >= time[0]))
         place = np.searchsorted(late, series.time[rows], "right") - 1
         off = np.abs(values[rows] - answer.mean[place, column])

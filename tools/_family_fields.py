@@ -25,15 +25,16 @@ def options_for(doc: str | None, *, truths: str) -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(description=(doc or "").split("\n")[0])
     options.add_argument("campaign", type=Path)
     options.add_argument("out", type=Path)
-    options.add_argument("--truths", type=_numbers, default=_numbers(truths))
+    options.add_argument("--truths", type=numbers, default=numbers(truths))
     options.add_argument("--unseal", action="store_true")
     options.add_argument("--workers", type=int)
     return options
 
 
-def _numbers(words: str) -> Sequence[int]:
-    first, _, last = words.partition("-")
-    return range(int(first), int(last or first) + 1)
+def numbers(words: str) -> Sequence[int]:
+    """Numbers such as "1-3,7"."""
+    spans = (part.partition("-") for part in words.split(","))
+    return [one for a, _, b in spans for one in range(int(a), int(b or a) + 1)]
 
 
 def field_of(

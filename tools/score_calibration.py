@@ -1,165 +1,141 @@
 """In which conditions a twin's 95 % intervals hold the truth, on cages of the family.
 
-    python tools/score_calibration.py CAMPAIGN OUT --truths 27-38 [--heavy 29 33 34] [--workers 2]
+    python tools/score_calibration.py CAMPAIGN OUT --truths 33-38 [--heavy 33 34] [--workers 2]
 
 CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
 virtual field of 50 days, odd numbers in tame and even ones in coastal water, with a shackle on
 every bridle; the twin trains with the cage's own sensors, depths on 25 days and shackles on half a
 day, and is scored on the last 25 days against the truth without sensors' errors: by third of the
-load, direction of the current, age of the buoy's sample, days since the training, growth since
-then, and whether the water is faster than any in the training. With ``--heavy`` the nets of those
-truths are clean until the depths' training ends, and grow from then on. Fields and answers are kept
+load, direction of the current, days since the training, growth since then, whether the water is
+faster than any in the training, and age of the buoy's sample; as trained, and with the factors of
+the living depth sensors. With ``--heavy`` the nets of those truths are clean until the depths'
+training ends, and grow from then on; they are summed up apart. Fields, twins and answers are kept
 in OUT; stopped, it goes on. Virtual field.
 """
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
-from _calibration_fields import AGES_MIN, NODE_TIMES, Answers, answers_of
+from _calibration_fields import AGES_MIN, Answers, Outputs, answers_of
 from _family_fields import SCORED_FROM, options_for
 
 from seacage.cage import Cage
 from seacage.records import read_campaign
 from seacage.twin import Training, train
+from seacage.twin._interval_factors import LOAD_POWER
 
-GROUPS = ("depths", "shackles", "bridles of level 1", "nodes", "volume")
-AGED, SECTORS = 3, ("north", "east", "south", "west")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Outputs:
-    """Of one field and one group, (time, output), but for the ages."""
-
-    true: np.ndarray
-    mean: np.ndarray  # (age, time, output)
-    std: np.ndarray
-    size: np.ndarray  # by which the thirds are
-    low: float  # least possible value
-    velocity: np.ndarray  # (time, 2)
-    day: np.ndarray
-    growth: np.ndarray
-    trained: np.ndarray  # day, by output
-    fastest: np.ndarray  # by output
+SECTORS = ("north", "east", "south", "west")
+GROWTHS = (("less by 0.3", -9.0, -0.3), ("about the same", -0.3, 0.3), ("more by 0.3", 0.3, 9.0))
+IN_KN = ("shackles", "bridles of level 1")
+LAST = 40.0  # day from which the last days count
+LEAST = {"depths": 0.88, "shackles": 0.85, "bridles of level 1": 0.85, "nodes": 0.85}
+Scores = tuple[np.ndarray, np.ndarray, np.ndarray]
+"""Whether each interval holds the truth, its width, and its score."""
 
 
-def outputs_of(one: Answers, group: str) -> Outputs:
-    """Take a group's outputs from a field's answers."""
-    depths = one.factor.shape[1]
-    last = np.nanmax(one.trained)
-    if group in GROUPS[:2]:
-        some = slice(0, depths) if group == "depths" else slice(depths, None)
-        parts = one.true[:, some], one.mean[..., some], one.std[..., some]
-        trained, fastest = one.trained[some], one.fastest[some]
-        low = 0.0
-    elif group == GROUPS[2]:
-        some = one.bridle_level == 1
-        parts = one.bridle_true[:, some], one.bridle_mean[..., some], one.bridle_std[..., some]
-        trained = np.full(some.sum(), np.nanmin(one.trained))
-        fastest = np.full(some.sum(), np.nanmin(one.fastest))
-        low = 0.0
-    else:
-        if group == "nodes":
-            flat = [v.reshape(len(v), -1) for v in (one.node_true, one.node_mean, one.node_std)]
-            size = np.repeat(one.node_size, 3, axis=1)
-        else:
-            flat = [v[:, None] for v in one.volume]
-            size = 1.0 - flat[1]
-        at = slice(0, None, NODE_TIMES)
-        count = flat[0].shape[1]
-        return Outputs(
-            true=flat[0],
-            mean=flat[1][None],
-            std=flat[2][None],
-            size=size,
-            low=-np.inf,
-            velocity=one.velocity[0, at],
-            day=one.day[at],
-            growth=one.growth[at],
-            trained=np.full(count, last),
-            fastest=np.full(count, np.nanmax(one.fastest[:depths])),
+def main() -> None:
+    """Train and answer, truth by truth, and sum up."""
+    options = options_for(__doc__, truths="33-38")
+    options.add_argument("--heavy", type=int, nargs="*", default=[])
+    given = options.parse_args()
+    campaign = read_campaign(given.campaign)
+    base = train(Cage.from_toml(campaign.cage_toml), campaign, training=Training(restarts=0))
+    for name, numbers in (("", given.truths), (", heavy growth", given.heavy)):
+        answers = [answers_of(base, number, given, heavy=bool(name)) for number in numbers]
+        if answers:
+            report(answers, f"{len(answers)} truths{name} (virtual field)")
+
+
+def report(answers: Sequence[Answers], title: str) -> None:
+    """Print coverage, mean width and interval score by group and condition."""
+    for group in answers[0].groups:
+        unit = 1e-3 if group in IN_KN else 1.0
+        outputs = [one.groups[group] for one in answers]
+        every = [scores_of(one, one.std[0]) for one in outputs]
+        each = [held.mean(axis=0) for held, _, _ in every]
+        cages, least = np.array([one.mean() for one in each]), LEAST.get(group, 0.88)
+        below = np.sum(
+            [np.min(one) < least for one in each] if group == "depths" else cages < least
         )
-    return Outputs(
-        true=parts[0],
-        mean=parts[1],
-        std=parts[2],
-        size=parts[1][0],
-        low=low,
-        velocity=one.velocity[0],
-        day=one.day,
-        growth=one.growth,
-        trained=trained,
-        fastest=fastest,
-    )
+        print(f"{title}, {group}\n  {'all':34s}{_row(every, unit)}")
+        print(f"  least cage {cages.min():.2f}; below {least} on {below} of {len(cages)}")
+        parts: dict[str, list[Scores]] = {}
+        for one, output, scores in zip(answers, outputs, every, strict=True):
+            for name, mask in _conditions(one, output, group):
+                parts.setdefault(name, []).append(tuple(part[mask] for part in scores))
+            for name, more in _doors(one, output, group):
+                parts.setdefault(name, []).append(more)
+        for name, scores in parts.items():
+            print(f"  {name:34s}{_row(scores, unit)}")
 
 
-def scores_of(one: Outputs, age: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Whether each interval holds the truth, its width and its score, (time, output)."""
-    ends = one.mean[age] - 1.96 * one.std[age], one.mean[age] + 1.96 * one.std[age]
-    lower, upper = (np.maximum(end, one.low) for end in ends)
+def scores_of(one: Outputs, std: np.ndarray, age: int = 0) -> Scores:
+    """Scores of intervals, (time, output). Nothing but a node lies below zero."""
+    ends = one.mean[age] - 1.96 * std, one.mean[age] + 1.96 * std
+    lower, upper = ends if one.true.min() < 0.0 else (np.maximum(end, 0.0) for end in ends)
     miss = np.maximum(lower - one.true, 0.0) + np.maximum(one.true - upper, 0.0)
     return miss <= 0.0, upper - lower, upper - lower + 40.0 * miss
 
 
-def cuts_of(one: Outputs) -> Iterator[tuple[str, np.ndarray]]:
+def _conditions(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str, np.ndarray]]:
     """Name and mask, (time, output), of each condition."""
-    shape = one.true.shape
-    third = np.stack(
-        [np.digitize(col, np.quantile(col, [1 / 3, 2 / 3])) for col in one.size.T], axis=1
-    )
+    shape, size = one.true.shape, one.mean[0]
+    if group in ("nodes", "volume"):
+        whole = whole.at_nets()
+        size = np.repeat(whole.size, 3, axis=1) if group == "nodes" else 1.0 - size
+    edges = np.quantile(size, [1 / 3, 2 / 3], axis=0)
+    third = (size > edges[0]).astype(int) + (size > edges[1])
     for k in range(3):
-        yield f"load third {k + 1}", third == k
-    toward = np.rad2deg(np.arctan2(one.velocity[:, 0], one.velocity[:, 1]))
+        yield f"third {k + 1} of the load", third == k
+    toward = np.rad2deg(np.arctan2(*whole.velocity.T))
     sector = np.floor((toward + 45.0) / 90.0) % 4
     for k, name in enumerate(SECTORS):
-        yield f"current to {name}", np.broadcast_to((sector == k)[:, None], shape)
+        yield f"current to the {name}", _tile(sector == k, shape)
+    since = whole.day[:, None] - one.trained
     for start in np.arange(SCORED_FROM, 50.0, 5.0):
-        inside = (one.day >= start) & (one.day < start + 5.0)
-        yield f"day {start:.0f}-{start + 5:.0f}", np.broadcast_to(inside[:, None], shape)
-    begun = np.array([np.interp(day, one.day, one.growth) for day in one.trained])
-    more = one.growth[:, None] - begun
-    for name, low, high in (("< -0.3", -9, -0.3), ("about 0", -0.3, 0.3), ("> 0.3", 0.3, 9)):
-        yield f"growth since training {name}", (more >= low) & (more < high)
-    speed = np.linalg.norm(one.velocity, axis=1)
-    faster = speed[:, None] > one.fastest
-    yield "slower than in training", ~faster
-    yield "faster than in training", faster
+        some = (whole.day >= start) & (whole.day < start + 5.0)
+        days = f"{since[some].min():.0f} to {np.ceil(since[some].max()):.0f}"
+        yield f"{days} days since the training", _tile(some, shape)
+    begun = np.interp(one.trained, whole.day, whole.growth)
+    more = whole.growth[:, None] - begun
+    for name, low, high in GROWTHS:
+        yield f"growth since day 25 {name}", (more >= low) & (more < high)
+    faster = np.linalg.norm(whole.velocity, axis=1)[:, None] > one.fastest
+    yield "slower than in the training", ~faster
+    yield "faster than in the training", faster
 
 
-def report(answers: Mapping[str, Answers]) -> None:
-    """Print coverage, mean width and interval score by group and condition."""
-    for group in GROUPS:
-        outputs = [outputs_of(one, group) for one in answers.values()]
-        scale = 1e-3 if group in GROUPS[1:3] else 1.0
-        every = [scores_of(one) for one in outputs]
-        by_output = [held.mean(axis=0) for held, _, _ in every]
-        by_cage = np.array([one.mean() for one in by_output])
-        whole = all_ = np.concatenate(by_output)
-        print(
-            f"{group}: {_row([np.concatenate([s[k].ravel() for s in every]) for k in range(3)], scale)}"
-            f"; least cage {by_cage.min():.2f}, cages below 0.85: {np.sum(by_cage < 0.85)}"
-            f", below 0.88: {np.sum(by_cage < 0.88)} of {len(by_cage)}"
-            f"; outputs below 0.88: {np.sum(whole < 0.88)} of {len(all_)}"
-        )
-        names = [name for name, _ in cuts_of(outputs[0])]
-        cut = {name: [[], [], []] for name in names}
-        for one, scores in zip(outputs, every, strict=True):
-            for name, mask in cuts_of(one):
-                for k in range(3):
-                    cut[name][k].append(scores[k][mask])
-        for name in names:
-            print(f"  {name:32s} {_row([np.concatenate(v) for v in cut[name]], scale)}")
-        if outputs[0].mean.shape[0] > 1:
-            for age, minutes in enumerate(AGES_MIN):
-                some = [scores_of(one, age) for one in outputs]
-                parts = [np.concatenate([s[k].ravel() for s in some]) for k in range(3)]
-                print(f"  input {minutes:.0f} min old{'':18s} {_row(parts, scale)}")
+def _doors(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str, Scores]]:
+    """Scores by age of the input, and with the factors of the depth sensors."""
+    for age, minutes in enumerate(AGES_MIN):
+        yield f"input {minutes:.0f} min old, as if new", scores_of(one, one.std[age], age)
+        yield f"input {minutes:.0f} min old", scores_of(one, one.late[age], age)
+    if group in ("nodes", "volume"):
+        return
+    last = whole.day >= LAST
+    if group == "depths":
+        others = [np.median(np.log(np.delete(whole.factor, k, 1)), axis=1) for k in range(3)]
+        yield "living, with its own factor", scores_of(one, one.std[0] * whole.factor)
+        name, factor = "silent", np.exp(np.maximum(np.stack(others, axis=1), 0.0))
+    else:
+        median = np.maximum(np.median(np.log(whole.factor), axis=1), 0.0)
+        name, factor = "without a sensor", np.exp(LOAD_POWER * median)[:, None]
+    for word, std in (("as trained", one.std[0]), ("factor of the depths", one.std[0] * factor)):
+        scores = scores_of(one, std)
+        yield f"{name}, {word}", scores
+        yield f"{name}, {word}, last days", tuple(part[last] for part in scores)
 
 
-def _row(parts: list[np.ndarray], scale: float) -> str:
-    if not len(parts[0]):
+def _tile(mask: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    return np.broadcast_to(mask[:, None], shape)
+
+
+def _row(scores: Sequence[Scores], unit: float) -> str:
+    held, width, score = (np.concatenate([one[k].ravel() for one in scores]) for k in range(3))
+    if not len(held):
         return "none"
-    held, width, score = (float(one.mean()) for one in parts)
-    return (
-        f"holds {held:.3f}, width {width * scale:.3g}, score {score * scale:.3g} ({len(parts[0])})"
-    )
+    return f"{held.mean():.3f}  width {width.mean() * unit:.3g}  score {score.mean() * unit:.3g}"
+
+
+if __name__ == "__main__":
+    main()

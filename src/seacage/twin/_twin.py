@@ -18,10 +18,12 @@ from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
 from seacage.twin._interval_factors import (
     ADAPTATION_BLOCK,
+    LOAD_POWER,
     MeanStd,
     Tracked,
     adapt_factor,
     block_begin,
+    carried_factor,
     counts,
     factors_from_json,
     with_predictions,
@@ -318,15 +320,17 @@ class Twin:
         }
 
     def _scale(self, answer: Answer, state: TwinState) -> Answer:
-        """Scale the intervals of sensors that are not silent, and of the lines they are on."""
-        factor = {
-            name: 1.0 if name in state.silent else tracked.factor
-            for name, tracked in state.tracked.items()
-        }
-        bridle = np.ones(self.cage.bridle_count)
-        for shackle in self.cage.shackles:
-            bridle[shackle.bridle] = factor.get(shackle.name, 1.0)
-        sensor = np.array([factor.get(name, 1.0) for name in answer.sensor_names])
+        """Scale the intervals of sensors and lines: by their readings, or those of the depths."""
+        depths = [one.name for one in self.cage.depth_sensors]
+        carried = carried_factor(state.tracked, depths, state.silent)
+        load = carried**LOAD_POWER
+        sensor = np.array([carried if name in depths else load for name in answer.sensor_names])
+        for column, name in enumerate(answer.sensor_names):
+            tracked = state.tracked.get(name, Tracked())
+            if tracked.counted is not None and name not in state.silent:
+                sensor[column] = tracked.factor
+        bridle = np.full(self.cage.bridle_count, load)
+        bridle[[one.bridle for one in self.cage.shackles]] = sensor[len(depths) :]
         return answer.widened(bridle=bridle, sensor=sensor)
 
     def _reading_at(self, state: TwinState, t: datetime) -> Reading:

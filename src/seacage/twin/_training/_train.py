@@ -134,10 +134,6 @@ def train(
         if name not in {**level_1.models.line_upper, **level_1.models.depth_ratio}:
             models = _with_level_2_in_waves(models, data, field, name, travel_time)
         report(name, done)
-    current_change = level_1.current_change
-    if not level_1.models.upper and windows:
-        until = instant(max(one.end for one in windows.values()))
-        current_change = CurrentChange.of_buoy(field.buoy.rows(field.buoy.time < until))
     provenance = replace(
         provenance,
         origin=provenance.origin if windows == provenance.training_windows else field.origin,
@@ -151,8 +147,18 @@ def train(
         provenance=provenance,
         buoy=buoy,
         travel_time=travel_time,
-        current_change=current_change,
+        current_change=_current_change(level_1, field, windows),
     )
+
+
+def _current_change(
+    base: Twin, field: FieldRecord, windows: Mapping[str, TrainingWindow]
+) -> CurrentChange:
+    """How the buoy's current changes, until the last training window ends; a base's own stays."""
+    if base.models.upper or not windows:
+        return base.current_change
+    until = instant(max(one.end for one in windows.values()))
+    return CurrentChange.of_buoy(field.buoy.rows(field.buoy.time < until))
 
 
 def _with_waves(models: Models, field: FieldRecord) -> Models:
