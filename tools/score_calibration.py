@@ -1,6 +1,6 @@
 """In which conditions a twin's 95 % intervals hold the truth, on cages of the family.
 
-    python tools/score_calibration.py CAMPAIGN OUT --truths 33-38 [--heavy 33 34] [--workers 2]
+    python tools/score_calibration.py CAMPAIGN OUT --truths 33-38 [--heavy 33,34] [--workers 2]
 
 CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
 virtual field of 50 days, odd numbers in tame and even ones in coastal water, with a shackle on
@@ -17,7 +17,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 from _calibration_fields import AGES_MIN, Answers, Outputs, answers_of
-from _family_fields import SCORED_FROM, options_for
+from _family_fields import SCORED_FROM, numbers, options_for
 
 from seacage.cage import Cage
 from seacage.records import read_campaign
@@ -36,12 +36,12 @@ Scores = tuple[np.ndarray, np.ndarray, np.ndarray]
 def main() -> None:
     """Train and answer, truth by truth, and sum up."""
     options = options_for(__doc__, truths="33-38")
-    options.add_argument("--heavy", type=int, nargs="*", default=[])
+    options.add_argument("--heavy", type=numbers, default=[])
     given = options.parse_args()
     campaign = read_campaign(given.campaign)
     base = train(Cage.from_toml(campaign.cage_toml), campaign, training=Training(restarts=0))
-    for name, numbers in (("", given.truths), (", heavy growth", given.heavy)):
-        answers = [answers_of(base, number, given, heavy=bool(name)) for number in numbers]
+    for name, truths in (("", given.truths), (", heavy growth", given.heavy)):
+        answers = [answers_of(base, one, given, heavy=bool(name)) for one in truths]
         if answers:
             report(answers, f"{len(answers)} truths{name} (virtual field)")
 
@@ -54,9 +54,8 @@ def report(answers: Sequence[Answers], title: str) -> None:
         every = [scores_of(one, one.std[0]) for one in outputs]
         each = [held.mean(axis=0) for held, _, _ in every]
         cages, least = np.array([one.mean() for one in each]), LEAST.get(group, 0.88)
-        below = np.sum(
-            [np.min(one) < least for one in each] if group == "depths" else cages < least
-        )
+        worst = np.array([np.min(one) for one in each]) if group == "depths" else cages
+        below = np.sum(worst < least)
         print(f"{title}, {group}\n  {'all':34s}{_row(every, unit)}")
         print(f"  least cage {cages.min():.2f}; below {least} on {below} of {len(cages)}")
         parts: dict[str, list[Scores]] = {}
