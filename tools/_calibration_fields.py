@@ -18,6 +18,7 @@ EXTRA = "extra-"
 """Before the names of the shackles that the twin does not see."""
 AGES_MIN = (0.0, 10.0, 30.0, 60.0)  # least, of the buoy's newest sample
 NODE_TIMES, NODES = 12, 8  # nodes are scored every twelfth half hour, and every eighth of them
+AGED_TIMES = 4  # and answers to an older input every fourth, where no nodes are asked for
 DAY = np.timedelta64(86400, "s")
 # Growth that begins where the depth sensors' training ends, is half done ten days later, and is
 # never cleaned
@@ -110,8 +111,11 @@ def _answers(
 ) -> Answers:
     time, truth = scored_times(field.record.buoy), field.truth
     waters = [held_water(twin, field.record.buoy, time, age) for age in AGES_MIN]
-    late = [twin.predict(one).without_nodes() for one in waters]
-    new = [twin.predict(_new(one)).without_nodes() for one in waters]
+    new = [twin.predict(_new(waters[0])).without_nodes()]
+    late, rows = [new[0]], np.arange(0, len(time), AGED_TIMES)
+    for one in waters[1:]:
+        late.append(twin.predict(one.rows(rows)).without_nodes())
+        new.append(twin.predict(_new(one.rows(rows))).without_nodes())
     some = np.arange(0, len(time), NODE_TIMES)
     late_nets = [twin.predict(one.rows(some)) for one in waters]
     new_nets = [twin.predict(_new(one.rows(some))) for one in waters]
@@ -129,8 +133,8 @@ def _answers(
         true: np.ndarray, answers: tuple[list[Answer], list[Answer]], name: str, columns: slice
     ) -> Outputs:
         first, second = ([_moments(one, name) for one in each] for each in answers)
-        mean = np.stack([one[0] for one in first])
-        std, wide = (np.stack([one[1] for one in each]) for each in (second, first))
+        mean = _spread([one[0] for one in first])
+        std, wide = (_spread([one[1] for one in each]) for each in (second, first))
         own = columns if name == "sensor" else slice(depths) if name == "node" else slice(depths, 8)
         end, most = (np.resize(one[own], true.shape[1]) for one in (ends, fastest))
         return Outputs(true=true, mean=mean, std=std, late=wide, trained=end, fastest=most)
@@ -155,6 +159,14 @@ def _answers(
             "volume": put_together(volume[:, None], nets, "volume", slice(None)),
         },
     )
+
+
+def _spread(each: list[np.ndarray]) -> np.ndarray:
+    """Stack arrays by age; NaN where an older input was not asked for."""
+    found = np.full((len(each), *each[0].shape), np.nan)
+    for place, one in zip(found, each, strict=True):
+        place[:: len(place) // len(one)] = one
+    return found
 
 
 def _new(water: Metocean) -> Metocean:

@@ -16,7 +16,7 @@ in OUT; stopped, it goes on. Virtual field.
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from _calibration_fields import AGES_MIN, Answers, Outputs, answers_of
+from _calibration_fields import AGED_TIMES, AGES_MIN, Answers, Outputs, answers_of
 from _family_fields import SCORED_FROM, numbers, options_for
 
 from seacage.cage import Cage
@@ -56,16 +56,16 @@ def report(answers: Sequence[Answers], title: str) -> None:
         cages, least = np.array([one.mean() for one in each]), LEAST.get(group, 0.88)
         worst = np.array([np.min(one) for one in each]) if group == "depths" else cages
         below = np.sum(worst < least)
-        print(f"{title}, {group}\n  {'all':34s}{_row(every, unit)}")
+        print(f"{title}, {group}\n  {'all':40s}{_row(every, unit)}")
         print(f"  least cage {cages.min():.2f}; below {least} on {below} of {len(cages)}")
         parts: dict[str, list[Scores]] = {}
         for one, output, scores in zip(answers, outputs, every, strict=True):
             for name, mask in _conditions(one, output, group):
-                parts.setdefault(name, []).append(tuple(part[mask] for part in scores))
+                parts.setdefault(name, []).append(_some(scores, mask))
             for name, more in _doors(one, output, group):
                 parts.setdefault(name, []).append(more)
         for name, scores in parts.items():
-            print(f"  {name:34s}{_row(scores, unit)}")
+            print(f"  {name:40s}{_row(scores, unit)}")
 
 
 def scores_of(one: Outputs, std: np.ndarray, age: int = 0) -> Scores:
@@ -107,8 +107,10 @@ def _conditions(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str,
 def _doors(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str, Scores]]:
     """Scores by age of the input, and with the factors of the depth sensors."""
     for age, minutes in enumerate(AGES_MIN):
-        yield f"input {minutes:.0f} min old, as if new", scores_of(one, one.std[age], age)
-        yield f"input {minutes:.0f} min old", scores_of(one, one.late[age], age)
+        some = slice(None, None, 1 if group in ("nodes", "volume") else AGED_TIMES)
+        for words, std in ((", as if new", one.std), ("", one.late)):
+            scores = scores_of(one, std[age], age)
+            yield f"input {minutes:.0f} min old{words}", _some(scores, some)
     if group in ("nodes", "volume"):
         return
     last = whole.day >= LAST
@@ -122,7 +124,12 @@ def _doors(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str, Scor
     for word, std in (("as trained", one.std[0]), ("factor of the depths", one.std[0] * factor)):
         scores = scores_of(one, std)
         yield f"{name}, {word}", scores
-        yield f"{name}, {word}, last days", tuple(part[last] for part in scores)
+        yield f"{name}, {word}, last days", _some(scores, last)
+
+
+def _some(scores: Scores, some: np.ndarray | slice) -> Scores:
+    held, width, score = scores
+    return held[some], width[some], score[some]
 
 
 def _tile(mask: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:

@@ -80,7 +80,7 @@ def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: f
     return replace(tracked, factor=factor, counted=sample.t)
 
 
-def carried_factor(
+def factor_of_depths(
     tracked: Mapping[str, Tracked], depths: Iterable[str], silent: Container[str]
 ) -> float:
     """Factor on the interval of a depth that no reading adapts: the median of living sensors'.

@@ -28,9 +28,9 @@ from seacage.twin._correction import (
     NetCorrection,
     discrepancy_std,
     relative_discrepancy,
+    variance_by_change,
     volume_std,
 )
-from seacage.twin._current_change import variance_by_change
 from seacage.twin._lines._line_correction import LineCorrection, correct_lines, load_variables
 from seacage.twin._lines._line_loads import LineLoads
 from seacage.twin._metocean import Input, Metocean, nearest_inside
@@ -319,37 +319,38 @@ class Models:
             "node_sigma": shape.std.max(axis=2),
             "node_std": self.net.std(water, shape) if self.net else np.full_like(shape.std, np.nan),
             "volume_fraction": volume,
-            "volume_std": np.sqrt(volume_sd**2 + by_change),
+            "volume_std": np.hypot(volume_sd, by_change),
         }
 
     def _add_change(
         self, water: Metocean, shape: Prediction, bridle: Prediction, sensor: Prediction
     ) -> Float[np.ndarray, " case"]:
-        """Add how far the current may have changed to standard deviations; the volume's variance.
+        """Add how far the current may have changed to standard deviations; the volume's is left.
 
         Beyond the fastest water of level 1 nothing more is taken to change.
         """
         columns, count = list(self.corrections), sensor.std.shape[1]
 
-        def known(some: Metocean) -> Metocean:
+        def within(some: Metocean) -> Metocean:
             return some.limited(current_speed=self.edge[0], hs=math.inf)
 
         def best(some: Metocean) -> Float[np.ndarray, "case output"]:
-            means = self._sensors_and_bridles(known(some))
+            means = self._sensors_and_bridles(within(some))
             if self.together is not None:
                 low = Prediction(mean=means[:, columns], std=np.zeros((len(means), len(columns))))
-                x = known(some).features(self.inputs)
+                x = within(some).features(self.inputs)
                 means[:, columns] = self.together.latent(x, low, np.zeros_like(low.mean)).mean
             return means
 
         both = variance_by_change(water, best)
         for column, line in self._lines.items():
             both[:, count + line] = both[:, column]
-        sensor.std[:] = np.sqrt(sensor.std**2 + both[:, :count])
-        bridle.std[:] = np.sqrt(bridle.std**2 + both[:, count:])
+        sd = np.sqrt(both)
+        sensor.std[:] = np.hypot(sensor.std, sd[:, :count])
+        bridle.std[:] = np.hypot(bridle.std, sd[:, count:])
         there = self.net.water(water, sensor.mean[:, self._net_columns]) if self.net else water
-        net = variance_by_change(there, lambda one: self._nodes_and_volume(known(one)))
-        shape.std[:] = np.sqrt(shape.std**2 + net[:, :-1].reshape(shape.std.shape))
+        net = np.sqrt(variance_by_change(there, lambda one: self._nodes_and_volume(within(one))))
+        shape.std[:] = np.hypot(shape.std, net[:, :-1].reshape(shape.std.shape))
         return net[:, -1]
 
     def _own_domains(

@@ -13,7 +13,7 @@ from seacage.conventions import Flag, InputError, Origin, duration_text
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample, bin_keys, current_bins, instant
 from seacage.twin._answer import Answer
-from seacage.twin._current_change import CurrentChange
+from seacage.twin._correction import CurrentChange
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
 from seacage.twin._interval_factors import (
@@ -23,8 +23,8 @@ from seacage.twin._interval_factors import (
     Tracked,
     adapt_factor,
     block_begin,
-    carried_factor,
     counts,
+    factor_of_depths,
     factors_from_json,
     with_predictions,
 )
@@ -322,7 +322,7 @@ class Twin:
     def _scale(self, answer: Answer, state: TwinState) -> Answer:
         """Scale the intervals of sensors and lines: by their readings, or those of the depths."""
         depths = [one.name for one in self.cage.depth_sensors]
-        carried = carried_factor(state.tracked, depths, state.silent)
+        carried = factor_of_depths(state.tracked, depths, state.silent)
         load = carried**LOAD_POWER
         sensor = np.array([carried if name in depths else load for name in answer.sensor_names])
         for column, name in enumerate(answer.sensor_names):

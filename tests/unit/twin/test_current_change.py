@@ -11,7 +11,7 @@ from seacage.conventions import InputError, Origin
 from seacage.records import Record, Sample
 from seacage.testing import stand_in_twin
 from seacage.twin import CurrentChange, Metocean, TravelTime, Twin
-from seacage.twin._current_change import variance_by_change
+from seacage.twin._correction import variance_by_change
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 STEP_S = 600.0

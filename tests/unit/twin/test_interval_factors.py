@@ -7,7 +7,7 @@ from seacage.conventions import Flag, InputError
 from seacage.records import Amendment, Sample
 from seacage.testing import stand_in_twin
 from seacage.twin import Answered, CurrentChange, TwinState, adapted_at, adapted_at_us
-from seacage.twin._interval_factors import Tracked, adapt_factor, carried_factor, counts
+from seacage.twin._interval_factors import Tracked, adapt_factor, counts, factor_of_depths
 
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 
@@ -130,11 +130,11 @@ def test_the_median_of_living_depths_is_carried_and_never_narrows():
         name: Tracked(factor=factor, counted=NOON)
         for name, factor in zip(depths, (4.0, 1.2, 0.8), strict=True)
     }
-    assert carried_factor(tracked, depths, frozenset()) == pytest.approx(1.2)
-    assert carried_factor(tracked, depths, {"depth-1"}) == 1.0
-    assert carried_factor(tracked, depths, {"depth-3"}) == pytest.approx(4.8**0.5)
-    assert carried_factor({}, depths, frozenset()) == 1.0
-    assert carried_factor({"depth-1": Tracked(factor=3.0)}, depths, frozenset()) == 1.0
+    assert factor_of_depths(tracked, depths, frozenset()) == pytest.approx(1.2)
+    assert factor_of_depths(tracked, depths, {"depth-1"}) == 1.0
+    assert factor_of_depths(tracked, depths, {"depth-3"}) == pytest.approx(4.8**0.5)
+    assert factor_of_depths({}, depths, frozenset()) == 1.0
+    assert factor_of_depths({"depth-1": Tracked(factor=3.0)}, depths, frozenset()) == 1.0
 
 
 def test_a_restart_carries_the_same_factors():

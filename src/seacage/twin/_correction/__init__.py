@@ -1,6 +1,7 @@
 """Level 2: sensors corrected by their readings, and what these tell of bridles and net."""
 
 from seacage.twin._correction._bridles import discrepancy_std, relative_discrepancy
+from seacage.twin._correction._current_change import CurrentChange, variance_by_change
 from seacage.twin._correction._net import LEAST_SENSORS, NetCorrection, volume_std
 from seacage.twin._correction._sensor import (
     DAY,
@@ -17,10 +18,12 @@ __all__ = [
     "LEAST_SHARE",
     "Correction",
     "Corrections",
+    "CurrentChange",
     "FixedPrediction",
     "NetCorrection",
     "Spread",
     "discrepancy_std",
     "relative_discrepancy",
+    "variance_by_change",
     "volume_std",
 ]

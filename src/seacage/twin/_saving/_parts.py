@@ -11,8 +11,7 @@ from seacage import surrogates
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.records import check_stream
-from seacage.twin._correction import Correction, Spread
-from seacage.twin._current_change import CurrentChange
+from seacage.twin._correction import Correction, CurrentChange, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
 from seacage.twin._lines._line_correction import LineCorrection

@@ -22,8 +22,7 @@ from seacage.surrogates import (
     mnll,
     window_design,
 )
-from seacage.twin._correction import Correction
-from seacage.twin._current_change import CurrentChange
+from seacage.twin._correction import Correction, CurrentChange
 from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models

@@ -77,8 +77,8 @@ class CurrentChange:
             return np.zeros((1, 3))
         square, each = np.square(self.after_s), np.array(self.covariance)
         # Over a short time the current changes in proportion to it.
-        now = [np.interp(held_s**2, square, one) for one in each.T]
-        return min(held_s / self.after_s[0] - 1.0, 1.0) * (np.array(now) - each[0] / 3.0)[None]
+        now = np.array([float(np.interp(held_s**2, square, each[:, k])) for k in range(3)])
+        return min(held_s / self.after_s[0] - 1.0, 1.0) * (now - each[0] / 3.0)[None]
 
 
 def variance_by_change(
