@@ -5,7 +5,15 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
-from _family_fields import START, Water, field_of, scored_times, values_at
+from _family_fields import (
+    START,
+    Water,
+    field_of,
+    scored_times,
+    values_at,
+    with_every_shackle,
+    without_extra,
+)
 from score_net import true_nets
 
 from seacage.cage import Cage
@@ -14,8 +22,6 @@ from seacage.records import Record
 from seacage.surrogates import AdaptiveConformal
 from seacage.twin import Answer, Metocean, Training, Twin, train
 
-EXTRA = "extra-"
-"""Before the names of the shackles that the twin does not see."""
 AGES_MIN = (0.0, 10.0, 30.0, 60.0)  # least, of the buoy's newest sample
 NODE_TIMES, NODES = 12, 8  # nodes are scored every twelfth half hour, and every eighth of them
 AGED_TIMES = 4  # and answers to an older input every fourth, where no nodes are asked for
@@ -77,14 +83,6 @@ class Answers:
         np.savez_compressed(path, **own, **of_groups)
 
 
-def with_every_shackle(cage: Cage) -> Cage:
-    """Return the cage with a shackle on every bridle."""
-    seen = {one.bridle for one in cage.shackle}
-    others = (k for k in range(1, cage.bridle_count + 1) if k not in seen)
-    extra = (replace(cage.shackle[0], name=f"{EXTRA}{k}", bridle=k) for k in others)
-    return replace(cage, shackle=(*cage.shackle, *extra))
-
-
 def answers_of(base: Twin, number: int, given: argparse.Namespace, *, heavy: bool) -> Answers:
     """Train on one field, and answer; twin and answers are kept in the output folder."""
     water: Water = "tame" if number % 2 else "coastal"
@@ -95,9 +93,7 @@ def answers_of(base: Twin, number: int, given: argparse.Namespace, *, heavy: boo
             hidden = replace(hidden, fouling=replace(hidden.fouling, **HEAVY))
         full, folder = with_every_shackle(base.cage), f"truth-{number}"
         field = field_of(full, number, water, given, name=folder, hidden=hidden)
-        record = field.record
-        seen = {k: one for k, one in record.sensors.items() if not k.startswith(EXTRA)}
-        record, stored = replace(record, sensors=seen), kept.with_suffix(".twin")
+        record, stored = without_extra(field.record), kept.with_suffix(".twin")
         if not stored.is_dir():
             train(base.cage, None, record, base=base, training=Training(restarts=1)).write(stored)
         nets = scored_times(field.truth.buoy)[::NODE_TIMES]

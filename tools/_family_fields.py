@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
@@ -10,10 +11,11 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
-from seacage.records import Record
+from seacage.records import FieldRecord, Record
 
 START, DAYS, SCORED_FROM = datetime(2020, 1, 18, tzinfo=UTC), 50.0, 25.0
 EVERY = np.timedelta64(1800, "s")
+_EXTRA = "extra-"  # before the names of the shackles that the twin does not see
 Water = Literal["tame", "coastal"]
 
 
@@ -62,6 +64,20 @@ def field_of(
         kept=given.out / name,
         workers=given.workers,
     )
+
+
+def with_every_shackle(cage: Cage) -> Cage:
+    """Return the cage with a shackle on every bridle."""
+    seen = {one.bridle for one in cage.shackle}
+    others = (k for k in range(1, cage.bridle_count + 1) if k not in seen)
+    extra = (replace(cage.shackle[0], name=f"{_EXTRA}{k}", bridle=k) for k in others)
+    return replace(cage, shackle=(*cage.shackle, *extra))
+
+
+def without_extra(record: FieldRecord) -> FieldRecord:
+    """What the twin may see of a field with a shackle on every bridle."""
+    seen = {name: one for name, one in record.sensors.items() if not name.startswith(_EXTRA)}
+    return replace(record, sensors=seen)
 
 
 def scored_times(buoy: Record) -> np.ndarray:
