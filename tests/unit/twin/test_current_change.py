@@ -34,7 +34,7 @@ def test_changes_over_a_step_and_its_doubles_are_counted():
         origin=Origin.VIRTUAL_FIELD,
     )
     found = CurrentChange.of_buoy(record)
-    assert found.after_s == (600.0, 1200.0, 2400.0, 4800.0, 9600.0)
+    assert found.after_s == (600.0, 1200.0, 2400.0, 4800.0, 9600.0, 19200.0)
     east = np.array(found.covariance)[:, 0]
     # Mean square of a tide's change: 2 a^2 sin^2(pi h / T) at an amplitude of a.
     expected = [0.5 * np.sin(np.pi * h / 44714.0) ** 2 for h in found.after_s]

@@ -11,7 +11,8 @@ from seacage.conventions import InputError
 from seacage.records import Record
 from seacage.twin._metocean import Metocean
 
-LONGEST_S = 10800.0  # over which changes are counted [s]: no value is held longer by default
+# Changes are counted up to a time beyond this [s]: no value is held longer by default
+LONGEST_S = 10800.0
 LEAST_CHANGES = 50  # over one time; of fewer their covariance is not known
 
 # Covariance of (east, north): east with east, east with north, north with north [m2/s2]
@@ -58,7 +59,7 @@ class CurrentChange:
         step = float(np.median(np.diff(second)))
         found: dict[float, Covariance] = {}
         rows = 1
-        while step > 0.0 and rows * step <= LONGEST_S and rows < len(second):
+        while step > 0.0 and rows * step < 2.0 * LONGEST_S and rows < len(second):
             passed = second[rows:] - second[:-rows]
             change = (velocity[rows:] - velocity[:-rows])[np.abs(passed - rows * step) < step / 2]
             if len(change) >= LEAST_CHANGES:
