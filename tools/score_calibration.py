@@ -116,7 +116,9 @@ def _doors(whole: Answers, one: Outputs, group: str) -> Iterator[tuple[str, Scor
     last = whole.day >= LAST
     if group == "depths":
         others = [np.median(np.log(np.delete(whole.factor, k, 1)), axis=1) for k in range(3)]
-        yield "living, with its own factor", scores_of(one, one.std[0] * whole.factor)
+        own = scores_of(one, one.std[0] * whole.factor)
+        yield "living, with its own factor", own
+        yield "living, with its own factor, last days", _some(own, last)
         name, factor = "silent", np.exp(np.maximum(np.stack(others, axis=1), 0.0))
     else:
         median = np.maximum(np.median(np.log(whole.factor), axis=1), 0.0)
