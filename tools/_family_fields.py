@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
@@ -10,10 +11,11 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
-from seacage.records import Record
+from seacage.records import FieldRecord, Record
 
 START, DAYS, SCORED_FROM = datetime(2020, 1, 18, tzinfo=UTC), 50.0, 25.0
 EVERY = np.timedelta64(1800, "s")
+_EXTRA = "extra-"  # before the names of the shackles that the twin does not see
 Water = Literal["tame", "coastal"]
 
 
@@ -25,15 +27,16 @@ def options_for(doc: str | None, *, truths: str) -> argparse.ArgumentParser:
     options = argparse.ArgumentParser(description=(doc or "").split("\n")[0])
     options.add_argument("campaign", type=Path)
     options.add_argument("out", type=Path)
-    options.add_argument("--truths", type=_numbers, default=_numbers(truths))
+    options.add_argument("--truths", type=numbers, default=numbers(truths))
     options.add_argument("--unseal", action="store_true")
     options.add_argument("--workers", type=int)
     return options
 
 
-def _numbers(words: str) -> Sequence[int]:
-    first, _, last = words.partition("-")
-    return range(int(first), int(last or first) + 1)
+def numbers(words: str) -> Sequence[int]:
+    """Numbers such as "1-3,7"."""
+    spans = (part.partition("-") for part in words.split(","))
+    return [one for a, _, b in spans for one in range(int(a), int(b or a) + 1)]
 
 
 def field_of(
@@ -44,21 +47,37 @@ def field_of(
     *,
     name: str,
     profile: Literal["buoy", "cage"] | None = None,
+    hidden: TruthParameters | None = None,
 ) -> VirtualField:
     """A settled field of 50 days, kept in the output folder under a name.
 
-    ``profile``: where an ADCP is; None for none.
+    ``profile``: where an ADCP is; None for none. ``hidden``: None for those of the number.
     """
+    own = hidden or TruthParameters.of_family(number, water=water, unseal=given.unseal)
     return virtual_field(
         cage,
         generated_current(number, start=START, days=DAYS),
-        hidden=TruthParameters.of_family(number, water=water, unseal=given.unseal),
+        hidden=own,
         seed=number,
         method="settle",
         profile=profile,
         kept=given.out / name,
         workers=given.workers,
     )
+
+
+def with_every_shackle(cage: Cage) -> Cage:
+    """Return the cage with a shackle on every bridle."""
+    seen = {one.bridle for one in cage.shackle}
+    others = (k for k in range(1, cage.bridle_count + 1) if k not in seen)
+    extra = (replace(cage.shackle[0], name=f"{_EXTRA}{k}", bridle=k) for k in others)
+    return replace(cage, shackle=(*cage.shackle, *extra))
+
+
+def without_extra(record: FieldRecord) -> FieldRecord:
+    """What the twin may see of a field with a shackle on every bridle."""
+    seen = {name: one for name, one in record.sensors.items() if not name.startswith(_EXTRA)}
+    return replace(record, sensors=seen)
 
 
 def scored_times(buoy: Record) -> np.ndarray:

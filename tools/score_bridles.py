@@ -9,17 +9,21 @@ the tensions without sensors' errors. Fields are kept in OUT; stopped, it goes o
 """
 
 import argparse
-from dataclasses import replace
 
 import numpy as np
-from _family_fields import field_of, options_for, scored_times, share_by_third, values_at
+from _family_fields import (
+    field_of,
+    options_for,
+    scored_times,
+    share_by_third,
+    values_at,
+    with_every_shackle,
+    without_extra,
+)
 
 from seacage.cage import Cage
 from seacage.records import FieldRecord, read_campaign
 from seacage.twin import Training, Twin, train
-
-EXTRA = "extra-"
-"""Before the names of the shackles that the twin does not see."""
 
 
 def main() -> None:
@@ -28,7 +32,7 @@ def main() -> None:
     campaign = read_campaign(given.campaign)
     cage = Cage.from_toml(campaign.cage_toml)
     base = train(cage, campaign, training=Training(restarts=0))
-    full = _with_every_shackle(cage)
+    full = with_every_shackle(cage)
     coverage, thirds, expected = list[float](), list[np.ndarray](), list[float]()
     for number in given.truths:
         record, truth = _field(full, number, given)
@@ -53,19 +57,11 @@ def main() -> None:
     )
 
 
-def _with_every_shackle(cage: Cage) -> Cage:
-    seen = {one.bridle for one in cage.shackle}
-    others = (k for k in range(1, cage.bridle_count + 1) if k not in seen)
-    extra = (replace(cage.shackle[0], name=f"{EXTRA}{k}", bridle=k) for k in others)
-    return replace(cage, shackle=(*cage.shackle, *extra))
-
-
 def _field(cage: Cage, number: int, given: argparse.Namespace) -> tuple[FieldRecord, FieldRecord]:
     """What the twin may see of a truth, and the truth."""
     water = "tame" if number % 2 else "coastal"
     field = field_of(cage, number, water, given, name=f"truth-{number}")
-    seen = {name: one for name, one in field.record.sensors.items() if not name.startswith(EXTRA)}
-    return replace(field.record, sensors=seen), field.truth
+    return without_extra(field.record), field.truth
 
 
 def _score(cage: Cage, twin: Twin, truth: FieldRecord) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -26,7 +26,6 @@ from seacage.campaigns._virtual_field._responses import (
     _HELD_OUT_GROWTH,
     _SPEEDS,
     Responses,
-    _on_grid,
 )
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.records import Record, read_campaign
@@ -66,7 +65,7 @@ def _score(given: argparse.Namespace, number: int) -> Mapping[str, np.ndarray]:
     buoy = field.truth.buoy
     time = scored_times(buoy)[::EVERY]
     hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
-    true = _true_nets(base.cage, hidden, buoy, number, time, given.out / f"{water}-{number}")
+    true = true_nets(base.cage, hidden, buoy, number, time, given.out / f"{water}-{number}")
     low, best = (one.predict(one.travel_time.water_at(buoy, time)) for one in (base, twin))
     volume = base.cage.volume(true) / twin.models.still_volume
     error, of_low = true - best.node_position, true - low.node_position
@@ -98,7 +97,7 @@ def _summary(
     return np.array([ratio, off, held.mean(), half.mean(), *share_by_third(held, size)])
 
 
-def _true_nets(
+def true_nets(
     cage: Cage, hidden: TruthParameters, buoy: Record, seed: int, time: np.ndarray, kept: Path
 ) -> np.ndarray:
     """Positions of the true net's nodes at some times [m], from the equilibria of its field."""
@@ -107,12 +106,14 @@ def _true_nets(
         ABOVE + campaigns[hidden.true_cage(cage, growth).to_toml()].node_position
         for growth in (_HELD_OUT_GROWTH, *_GROWTHS)
     )
+    shape = len(_SPEEDS), len(_DIRECTIONS), still[0].size
+    around = np.broadcast_to(still[0].ravel(), (1, *shape[1:]))
     answers = Responses(
         sensor_names=tuple(f"coordinate {k}" for k in range(3 * cage.node_count)),
         speed=np.array([0.0, *_SPEEDS]),
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),
-        value=np.stack([_on_grid(still[0].ravel(), one.reshape(len(one), -1)) for one in moving]),
+        value=np.stack([np.concatenate([around, one.reshape(shape)]) for one in moving]),
     )
     seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
     rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))

@@ -16,7 +16,7 @@ from seacage.twin._alarms._policy import AlarmPolicy
 from seacage.twin._alarms._text import AlarmText, alarm_text
 from seacage.twin._answer import Answer, interval_reason
 from seacage.twin._assess import assess
-from seacage.twin._correction import Correction, FixedPrediction, Spread
+from seacage.twin._correction import Correction, CurrentChange, FixedPrediction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
 from seacage.twin._interval_factors import ADAPTATION_BLOCK, adapted_at, adapted_at_us, block_begin
@@ -60,6 +60,7 @@ __all__ = [
     "Changed",
     "Clearance",
     "Correction",
+    "CurrentChange",
     "Discrepancy",
     "Event",
     "FaultDetectorSettings",

@@ -6,9 +6,11 @@ came or on when the service was stopped.
 """
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
+from statistics import median
 
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
@@ -21,6 +23,9 @@ BLOCK_US = 600_000_000
 
 ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
 """Length of a block of readings that the intervals are adapted to at once."""
+# Of a line without a living shackle, the power of the depths' factor that its own is: a load
+# changes less with the net than a depth does (decision 95)
+LOAD_POWER = 1 / 3
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 # Mean and standard deviation of a sensor's reading, as trained [N] or [m]
@@ -73,6 +78,22 @@ def adapt_factor(tracked: Tracked, sample: Sample, expected: MeanStd, *, rate: f
     held = abs(reading - mean) <= INTERVAL_SD * tracked.factor * std
     factor = AdaptiveConformal(rate=rate).stepped(tracked.factor, held=held)
     return replace(tracked, factor=factor, counted=sample.t)
+
+
+def factor_of_depths(
+    tracked: Mapping[str, Tracked], depths: Iterable[str], silent: Container[str]
+) -> float:
+    """Factor on the interval of a depth that no reading adapts: the median of living sensors'.
+
+    A net that has grown since the training takes all depths away from what was learned. Where no
+    sensor lives their last factors stand. Never below 1, as another sensor's luck is none of its.
+
+    ``depths``: names of the depth sensors. ``silent``: of the silent sensors.
+    """
+    known = {name: tracked[name] for name in depths if name in tracked and tracked[name].counted}
+    living = [one for name, one in known.items() if name not in silent] or [*known.values()]
+    logs = [math.log(one.factor) for one in living]
+    return max(math.exp(median(logs)), 1.0) if logs else 1.0
 
 
 def with_predictions(

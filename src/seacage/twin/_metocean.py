@@ -39,6 +39,8 @@ class Metocean(Rows):
     ``wave_direction``: unit vector the waves travel along, (east, north) [-].
     ``profile``: mean and shear of the current over depth, as ``ocean.over_depth`` takes them,
     (east, north) of either [m/s]; None where nothing measures it.
+    ``current_change``: covariance of the current about it where a sample is held for longer than
+    the training knew: east with east, east with north, north with north [m2/s2]; None for none.
     """
 
     current_velocity: Float[np.ndarray, "case 2"]
@@ -46,6 +48,7 @@ class Metocean(Rows):
     tp: Float[np.ndarray, " case"]
     wave_direction: Float[np.ndarray, "case 2"]
     profile: Float[np.ndarray, "case 4"] | None = None
+    current_change: Float[np.ndarray, "case 3"] | None = None
 
     @classmethod
     def of(cls, sea: SeaState | Sequence[SeaState]) -> Self:
@@ -102,11 +105,12 @@ class Metocean(Rows):
     @property
     def whole(self) -> Float[np.ndarray, "case number"]:
         """All its numbers, side by side."""
-        return self.table if self.profile is None else np.hstack([self.table, self.profile])
+        more = [one for one in (self.profile, self.current_change) if one is not None]
+        return np.hstack([self.table, *more])
 
     @classmethod
     def from_table(cls, table: Float[np.ndarray, "case number"]) -> Self:
-        """Read what ``table`` or ``whole`` gave."""
+        """Read what ``table`` gave, or ``whole`` of water without a change of the current."""
         return cls(
             current_velocity=table[:, :2].copy(),
             hs=table[:, 2].copy(),

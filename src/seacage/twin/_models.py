@@ -1,5 +1,6 @@
 """The models of every level, and their prediction in known water."""
 
+import math
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
@@ -29,6 +30,7 @@ from seacage.twin._correction import (
     discrepancy_std,
     relative_discrepancy,
     relative_in_waves,
+    variance_by_change,
     volume_std,
     with_discrepancy,
 )
@@ -150,13 +152,23 @@ class Models:
 
     def steepness(self, water: Metocean) -> Float[np.ndarray, "case sensor"]:
         """Length of the gradient of each sensor's level 1 over the current [N s/m] or [s]."""
-        x = water.sides(STRIDE).features(self.inputs)
-        nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
-        lines = [one.bridle for one in self.cage.shackles]
-        depth = -self.shape.mean_of_nodes(x, nodes)[:, :, 2]
-        low = np.hstack([depth, self.bridles.mean(x)[:, lines]])
+        low = self._sensors_and_bridles(water.sides(STRIDE))[:, : len(self.cage.sensor_names)]
         east, west, north, south = low.reshape(4, len(water), low.shape[1])
         return np.hypot(east - west, north - south) / (2.0 * STRIDE)
+
+    def _sensors_and_bridles(self, water: Metocean) -> Float[np.ndarray, "case output"]:
+        """Means of level 1 of the sensors, then of all bridles [m] and [N]."""
+        x = water.features(self.inputs)
+        nodes = np.array([one.node for one in self.cage.depth_sensors], dtype=int)
+        bridle = self.bridles.mean(x)
+        lines = [one.bridle for one in self.cage.shackles]
+        return np.hstack([-self.shape.mean_of_nodes(x, nodes)[:, :, 2], bridle[:, lines], bridle])
+
+    def _nodes_and_volume(self, water: Metocean) -> Float[np.ndarray, "case output"]:
+        """Means of level 1 of the nodes' coordinates [m], then of the volume fraction."""
+        shape = self.shape.mean_of_nodes(water.features(self.inputs), slice(None))
+        volume = self.cage.volume(shape) / self.still_volume
+        return np.hstack([shape.reshape(len(shape), -1), volume[:, None]])
 
     def answer(self, water: Metocean, trouble: Sequence[str]) -> Answer:
         """Predict in each row of water, with no number where there is trouble with it.
@@ -303,8 +315,12 @@ class Models:
             edge = self._predict(milder, milder.features(self.inputs))
             parts = [_widen(one, end, ~inside) for one, end in zip(parts, edge, strict=True)]
         bridle_low, shape, sensor_low, bridle, sensor = parts
+        by_change = 0.0
+        if water.current_change is not None and water.current_change.any():
+            by_change = self._add_change(water, shape, bridle, sensor)
         bridle_in_domain, sensor_in_domain = self._own_domains(x, inside)
         volume = self.cage.volume(shape.mean) / self.still_volume
+        volume_sd = volume_std(volume) if self.net else np.full_like(volume, np.nan)
         return {
             "in_domain": inside,
             "bridle_in_domain": bridle_in_domain,
@@ -318,8 +334,39 @@ class Models:
             "node_sigma": shape.std.max(axis=2),
             "node_std": self.net.std(water, shape) if self.net else np.full_like(shape.std, np.nan),
             "volume_fraction": volume,
-            "volume_std": volume_std(volume) if self.net else np.full_like(volume, np.nan),
+            "volume_std": np.hypot(volume_sd, by_change),
         }
+
+    def _add_change(
+        self, water: Metocean, shape: Prediction, bridle: Prediction, sensor: Prediction
+    ) -> Float[np.ndarray, " case"]:
+        """Add how far the current may have changed to standard deviations; the volume's is left.
+
+        Beyond the fastest water of level 1 nothing more is taken to change.
+        """
+        columns, count = list(self.corrections), sensor.std.shape[1]
+
+        def within(some: Metocean) -> Metocean:
+            return some.limited(current_speed=self.edge[0], hs=math.inf)
+
+        def best(some: Metocean) -> Float[np.ndarray, "case output"]:
+            means = self._sensors_and_bridles(within(some))
+            if self.together is not None:
+                low = Prediction(mean=means[:, columns], std=np.zeros((len(means), len(columns))))
+                x = within(some).features(self.inputs)
+                means[:, columns] = self.together.latent(x, low, np.zeros_like(low.mean)).mean
+            return means
+
+        both = variance_by_change(water, best)
+        for column, line in self._lines.items():
+            both[:, count + line] = both[:, column]
+        sd = np.sqrt(both)
+        sensor.std[:] = np.hypot(sensor.std, sd[:, :count])
+        bridle.std[:] = np.hypot(bridle.std, sd[:, count:])
+        there = self.net.water(water, sensor.mean[:, self._net_columns]) if self.net else water
+        net = np.sqrt(variance_by_change(there, lambda one: self._nodes_and_volume(within(one))))
+        shape.std[:] = np.hypot(shape.std, net[:, :-1].reshape(shape.std.shape))
+        return net[:, -1]
 
     def _own_domains(
         self, x: Features, inside: Bool[np.ndarray, " case"]

@@ -13,15 +13,18 @@ from seacage.conventions import Flag, InputError, Origin, duration_text
 from seacage.ocean import SeaState
 from seacage.records import Amendment, Record, Sample, bin_keys, current_bins, instant
 from seacage.twin._answer import Answer
+from seacage.twin._correction import CurrentChange
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event
 from seacage.twin._interval_factors import (
     ADAPTATION_BLOCK,
+    LOAD_POWER,
     MeanStd,
     Tracked,
     adapt_factor,
     block_begin,
     counts,
+    factor_of_depths,
     factors_from_json,
     with_predictions,
 )
@@ -70,6 +73,8 @@ class Twin:
         Distribution of true shapes about its shapes; None where there is none.
     travel_time
         Of the current from the buoy to the cage.
+    current_change
+        Of the buoy's current, by which intervals widen while a sample is held.
     """
 
     models: Models
@@ -79,6 +84,7 @@ class Twin:
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
     discrepancy: Discrepancy | None = None
     travel_time: TravelTime = field(default_factory=TravelTime)
+    current_change: CurrentChange = field(default_factory=CurrentChange)
     # Of the manifest of the folder that it was read from; empty for one that was not read
     sha256: str = field(default="", init=False)
 
@@ -277,8 +283,8 @@ class Twin:
         if not counted:
             return state
         water = Metocean.joined(*(one for _, _, one in counted))
-        table, row = np.unique(water.whole, axis=0, return_inverse=True)
-        answer = self.models.answer(Metocean.from_table(table), [""] * len(table))
+        _, first, row = np.unique(water.whole, axis=0, return_index=True, return_inverse=True)
+        answer = self.models.answer(water.rows(first), [""] * len(first))
         factors = dict(state.tracked)
         for (name, sample, _), place in zip(counted, row.ravel(), strict=True):
             at = place, answer.sensor_names.index(name)
@@ -314,15 +320,17 @@ class Twin:
         }
 
     def _scale(self, answer: Answer, state: TwinState) -> Answer:
-        """Scale the intervals of sensors that are not silent, and of the lines they are on."""
-        factor = {
-            name: 1.0 if name in state.silent else tracked.factor
-            for name, tracked in state.tracked.items()
-        }
-        bridle = np.ones(self.cage.bridle_count)
-        for shackle in self.cage.shackles:
-            bridle[shackle.bridle] = factor.get(shackle.name, 1.0)
-        sensor = np.array([factor.get(name, 1.0) for name in answer.sensor_names])
+        """Scale the intervals of sensors and lines: by their readings, or those of the depths."""
+        depths = [one.name for one in self.cage.depth_sensors]
+        carried = factor_of_depths(state.tracked, depths, state.silent)
+        load = carried**LOAD_POWER
+        sensor = np.array([carried if name in depths else load for name in answer.sensor_names])
+        for column, name in enumerate(answer.sensor_names):
+            tracked = state.tracked.get(name, Tracked())
+            if tracked.counted is not None and name not in state.silent:
+                sensor[column] = tracked.factor
+        bridle = np.full(self.cage.bridle_count, load)
+        bridle[[one.bridle for one in self.cage.shackles]] = sensor[len(depths) :]
         return answer.widened(bridle=bridle, sensor=sensor)
 
     def _reading_at(self, state: TwinState, t: datetime) -> Reading:
@@ -358,12 +366,16 @@ class Twin:
     def _water_at_cage(self, state: TwinState, reported: Metocean, t: datetime) -> Metocean:
         """Water at the cage, whose current left the buoy a while ago.
 
-        It is found anew with each current that the buoy sends, and each minute.
+        It is found anew with each current that the buoy sends, and each minute. A current that
+        has come already is held, and may have changed since.
         """
         keys, travel = input_keys(["current"]), self.travel_time
         sent = max(sample.t for key, sample in state.newest(self.buoy, t).items() if key in keys)
         at = max(t.replace(second=0, microsecond=0), sent)
         left = at - timedelta(seconds=float(travel.of(reported.current_velocity)[0]))
+        if self.current_change.after_s:
+            change = self.current_change.beyond_usual((left - sent).total_seconds())
+            reported = replace(reported, current_change=change)
         past = state.around(self.buoy, left, keys) if left < sent else ()
         if not past:
             return reported

@@ -6,6 +6,7 @@ from seacage.twin._correction._bridles_in_waves import (
     relative_in_waves,
     with_discrepancy,
 )
+from seacage.twin._correction._current_change import CurrentChange, variance_by_change
 from seacage.twin._correction._net import LEAST_SENSORS, NetCorrection, volume_std
 from seacage.twin._correction._sensor import (
     DAY,
@@ -22,6 +23,7 @@ __all__ = [
     "LEAST_SHARE",
     "Correction",
     "Corrections",
+    "CurrentChange",
     "FixedPrediction",
     "NetCorrection",
     "Spread",
@@ -29,6 +31,7 @@ __all__ = [
     "discrepancy_std",
     "relative_discrepancy",
     "relative_in_waves",
+    "variance_by_change",
     "volume_std",
     "with_discrepancy",
 ]

@@ -49,8 +49,11 @@ class NetCorrection:
 
         ``depth``: of the sensors' nodes by their level 2 [m].
         """
-        there = self._multiply(water, self.relative_current(water, depth))
-        return self.shape.predict(there.features(self.inputs))
+        return self.shape.predict(self.water(water, depth).features(self.inputs))
+
+    def water(self, water: Metocean, depth: Float[np.ndarray, "case sensor"]) -> Metocean:
+        """Water in which the simulated net is the true one."""
+        return self._multiply(water, self.relative_current(water, depth))
 
     def relative_current(
         self, water: Metocean, depth: Float[np.ndarray, "case sensor"]
@@ -87,8 +90,11 @@ class NetCorrection:
         speed = np.linalg.norm(water.current_velocity, axis=1)
         # Water that is faster than any in the training stays as it is.
         most = np.maximum(1.0, self.most_speed / np.maximum(speed, 1e-9))
+        times, change = np.minimum(factor, most)[:, None], water.current_change
         return replace(
-            water, current_velocity=water.current_velocity * np.minimum(factor, most)[:, None]
+            water,
+            current_velocity=water.current_velocity * times,
+            current_change=None if change is None else change * times**2,
         )
 
 

@@ -11,7 +11,7 @@ from seacage import surrogates
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.records import check_stream
-from seacage.twin._correction import Correction, Spread, WindowErrors
+from seacage.twin._correction import Correction, CurrentChange, Spread, WindowErrors
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
 from seacage.twin._lines._line_correction import LineCorrection
@@ -28,7 +28,7 @@ from seacage.twin._travel_time import TravelTime
 FORMAT = "seacage twin"
 VERSION = 2
 # With what version 0.1.0 would ignore, a fault detector of other settings, a discrepancy of the
-# net's level 2, a travel time of the current, or profiles of it: it refuses these
+# net's level 2, a travel time of the current, its change, or profiles of it: it refuses these
 TUNED_VERSION = 3
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
@@ -37,7 +37,7 @@ PROFILES = "profiles:draws"
 DISCREPANCY = "discrepancy:"  # before the names of the arrays of the shapes' errors
 _ERRORS = ("current_velocity", "ring", "rest")
 # Fields that the header has as they are
-_OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector", "travel_time")
+_OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector", "travel_time", "current_change")
 _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
 _OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio", "line_errors")
@@ -95,6 +95,7 @@ class Header:
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
     travel_time: TravelTime = field(default_factory=TravelTime)
+    current_change: CurrentChange = field(default_factory=CurrentChange)
 
     __pydantic_config__ = json_keys(timeouts="watch")
 
@@ -105,8 +106,8 @@ def to_parts(
     """Return a twin's settings and arrays, from its fields."""
     from pydantic import TypeAdapter
 
-    usual = FaultDetectorSettings(), TravelTime()
-    tuned = (others["fault_detector"], others["travel_time"]) != usual or models.profiles
+    usual = FaultDetectorSettings(), TravelTime(), CurrentChange()
+    tuned = tuple(others[name] for name in _OF_TWIN[-3:]) != usual or models.profiles
     header = Header(
         format=FORMAT,
         version=TUNED_VERSION if tuned or (discrepancy and discrepancy.level > 1) else VERSION,

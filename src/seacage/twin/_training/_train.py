@@ -13,7 +13,7 @@ from jaxtyping import Float
 from seacage.cage import Cage
 from seacage.conventions import InputError, NonsenseError, Origin, Progress, no_progress
 from seacage.ocean import over_depth
-from seacage.records import CampaignRecord, FieldRecord, bin_keys, current_bins, moment
+from seacage.records import CampaignRecord, FieldRecord, bin_keys, current_bins, instant, moment
 from seacage.surrogates import (
     Domain,
     FittedGaussianProcess,
@@ -22,7 +22,7 @@ from seacage.surrogates import (
     mnll,
     window_design,
 )
-from seacage.twin._correction import Correction
+from seacage.twin._correction import Correction, CurrentChange
 from seacage.twin._lines._site_waves import SiteWaves
 from seacage.twin._metocean import Metocean, input_keys
 from seacage.twin._models import Models
@@ -141,8 +141,23 @@ def train(
     )
     buoy = base.buoy if base else field.buoy.stream
     return replace(
-        level_1, models=models, provenance=provenance, buoy=buoy, travel_time=travel_time
+        level_1,
+        models=models,
+        provenance=provenance,
+        buoy=buoy,
+        travel_time=travel_time,
+        current_change=_current_change(level_1, field, windows),
     )
+
+
+def _current_change(
+    base: Twin, field: FieldRecord, windows: Mapping[str, TrainingWindow]
+) -> CurrentChange:
+    """How the buoy's current changes, until the last training window ends; a base's own stays."""
+    if base.models.upper or not windows:
+        return base.current_change
+    until = instant(max(one.end for one in windows.values()))
+    return CurrentChange.of_buoy(field.buoy.rows(field.buoy.time < until))
 
 
 def _with_waves(models: Models, field: FieldRecord) -> Models:

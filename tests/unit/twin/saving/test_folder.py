@@ -9,7 +9,7 @@ import pytest
 
 from seacage.conventions import InputError, ModelError
 from seacage.testing import stand_in_seas, stand_in_twin
-from seacage.twin import FaultDetectorSettings, TravelTime, Twin, read_key
+from seacage.twin import CurrentChange, FaultDetectorSettings, TravelTime, Twin, read_key
 
 
 @pytest.fixture(scope="module")
@@ -53,13 +53,19 @@ def test_settings_of_the_fault_detector_are_read_back(tmp_path):
     assert Twin.read(tmp_path / "twin").fault_detector == settings
 
 
-def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(written, tmp_path):
-    replace(stand_in_twin(), fault_detector=FaultDetectorSettings(limit=25.0)).write(tmp_path / "t")
+def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(tmp_path):
+    plain = replace(stand_in_twin(), current_change=CurrentChange())
+    plain.write(tmp_path / "plain")
+    replace(plain, fault_detector=FaultDetectorSettings(limit=25.0)).write(tmp_path / "t")
     versions = [
-        json.loads((folder / "model.json").read_text())["version"]
-        for folder in (written, tmp_path / "t")
+        json.loads((tmp_path / name / "model.json").read_text())["version"]
+        for name in ("plain", "t")
     ]
     assert versions == [2, 3]
+
+
+def test_changes_of_the_current_make_a_twin_that_version_0_1_0_refuses(written):
+    assert json.loads((written / "model.json").read_text())["version"] == 3
 
 
 def test_the_travel_time_of_the_current_is_read_back_and_version_0_1_0_refuses_it(tmp_path):
