@@ -10,20 +10,11 @@ import sys
 import numpy as np
 from _timing import ONCE
 
-from seacage.studies._benchmarks._problems import CAGE_SIZE
+from seacage.studies._benchmarks._problems import CAGE_SIZE, autoregressive_noise
 from seacage.surrogates import NARGP, GaussianProcess, coverage, rmse
 
 KEPT, NOISE = 0.9, 0.8  # correlation from one case to the next [-]; standard deviation [kN]
 SEEDS = range(1001, 1002 if ONCE else 1001 + int(sys.argv[1] if len(sys.argv) > 1 else 30))
-
-
-def noise(cases: int, random: np.random.Generator) -> np.ndarray:
-    """An AR(1) series."""
-    series = random.standard_normal(cases)
-    for case in range(1, cases):
-        series[case] = KEPT * series[case - 1] + np.sqrt(1.0 - KEPT**2) * series[case]
-    return NOISE * series
-
 
 for cases in (60,) if ONCE else (60, 300):
     scores = []
@@ -31,7 +22,7 @@ for cases in (60,) if ONCE else (60, 300):
         sample, random = CAGE_SIZE.sample(seed), np.random.default_rng(seed)
         low, (x, _) = sample.levels
         x = x[random.choice(len(x), cases, replace=False)]
-        y = CAGE_SIZE.functions[1](x) + noise(cases, random)
+        y = CAGE_SIZE.functions[1](x) + NOISE * autoregressive_noise(cases, KEPT, random)
         lower = GaussianProcess(restarts=1).fit(*low)
         for time in (None, 2.0 * np.arange(cases)):
             fitted = NARGP().fit([(x, y)], lower=lower, time=time)

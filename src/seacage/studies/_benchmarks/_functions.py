@@ -102,6 +102,26 @@ def _hartmann(x: Rows, *, steps: int) -> Answers:
 hartmann_high, hartmann_middle, hartmann_low = (partial(_hartmann, steps=n) for n in range(3))
 
 
+def franke_low(x: Rows) -> Answers:
+    """Franke's two hills, slope and dip (1979), on the unit square."""
+    one, two = 9.0 * x.T
+    hill = 0.75 * np.exp(-((one - 2.0) ** 2 + (two - 2.0) ** 2) / 4.0)
+    slope = 0.75 * np.exp(-((one + 1.0) ** 2) / 49.0 - (two + 1.0) / 10.0)
+    second_hill = 0.5 * np.exp(-((one - 7.0) ** 2 + (two - 3.0) ** 2) / 4.0)
+    return hill + slope + second_hill - 0.2 * np.exp(-((one - 4.0) ** 2) - (two - 7.0) ** 2)
+
+
+def franke_middle(x: Rows) -> Answers:
+    """A fading wave of the low fidelity; Heo & Sung (2025)."""
+    low = franke_low(x)
+    return np.exp(-1.4 * low) * np.cos(3.5 * np.pi * low)
+
+
+def franke_high(x: Rows) -> Answers:
+    """A wave of the middle fidelity."""
+    return np.sin(2.0 * np.pi * (franke_middle(x) - 1.0))
+
+
 def cage_low(x: Rows) -> Answers:
     """Tension of a bridle [kN] in a current (east, north) [m/s]: a formula like a simulator's.
 

@@ -3,8 +3,9 @@
 Run as ``python _harness.py SCRIPT METHOD OUT JOB...`` by any interpreter that has NumPy:
 it imports nothing of seacage, so that ours and all peers are measured by the same lines. SCRIPT
 has ``METHODS``, which name functions ``fit(levels, *, noisy, seed)``; what they return is a
-function from inputs to mean and standard deviation. The answer to each job ``NAME.npz`` is laid
-in OUT under the same name and, as the sign that it is whole, as ``NAME.json``.
+function from inputs to mean and standard deviation. Where noise lasts, ``fit`` is given ``time``
+[s] of the highest level's cases too. The answer to each job ``NAME.npz`` is laid in OUT under the
+same name and, as the sign that it is whole, as ``NAME.json``.
 
 Times are of the processor, not of the wall, so that a busy machine disturbs them little.
 """
@@ -56,9 +57,10 @@ def _answer_job(fit: Callable[..., Any], job: Path, answer: Path) -> dict[str, f
     with np.load(job) as given:
         levels = [(given[f"x_{index}"], given[f"y_{index}"]) for index in range(given["levels"])]
         x_test, noisy, seed = given["x_test"], bool(given["noisy"]), int(given["seed"])
+        times = {"time": given["time"]} if "time" in given else {}
     np.random.seed(seed)  # noqa: NPY002 - peers draw from the global generator
     began = time.process_time()
-    predict = fit(levels, noisy=noisy, seed=seed)
+    predict = fit(levels, noisy=noisy, seed=seed, **times)
     fit_s = time.process_time() - began
     predict(x_test[:1])
     rows = x_test[:TICKS, None, :]

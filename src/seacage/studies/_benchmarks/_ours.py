@@ -10,9 +10,9 @@ Levels = Sequence[tuple[np.ndarray, np.ndarray]]
 Predict = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def _method(learn: Callable[[Levels, int], Predicts]) -> Callable[..., Predict]:
-    def fit(levels: Levels, *, seed: int, **_: object) -> Predict:
-        fitted = learn(levels, seed)
+def _method(learn: Callable[..., Predicts]) -> Callable[..., Predict]:
+    def fit(levels: Levels, *, seed: int, time: np.ndarray | None = None, **_: object) -> Predict:
+        fitted = learn(levels, seed=seed, time=time)
 
         def predict(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             answer = fitted.predict(x)
@@ -24,10 +24,10 @@ def _method(learn: Callable[[Levels, int], Predicts]) -> Callable[..., Predict]:
 
 
 METHODS = {
-    "nargp": _method(lambda levels, seed: NARGP().fit(levels, seed=seed)),
+    "nargp": _method(NARGP().fit),
     # the published kernel, without the linear term
-    "nargp-published": _method(lambda levels, seed: NARGP(linear=False).fit(levels, seed=seed)),
-    "ar1": _method(lambda levels, seed: AR1().fit(levels, seed=seed)),
-    "average": _method(lambda levels, seed: ModelAverage().fit(levels, seed=seed)),
-    "high-only": _method(lambda levels, seed: GaussianProcess().fit(*levels[-1], seed=seed)),
+    "nargp-published": _method(NARGP(linear=False).fit),
+    "ar1": _method(AR1().fit),
+    "average": _method(ModelAverage().fit),
+    "high-only": _method(lambda levels, **given: GaussianProcess().fit(*levels[-1], **given)),
 }

@@ -64,21 +64,31 @@ class Runs:
         on_done: Callable[[int], None],  # called with the number of seeds that are done
     ) -> list[RunScore]:
         """Score the method's answers for some seeds; those that are there are not made again."""
+        return self.ensure_all([(problem, seed) for seed in seeds], method, on_done=on_done)
+
+    def ensure_all(
+        self,
+        cases: Sequence[tuple[Problem, int]],
+        method: Method,
+        *,
+        on_done: Callable[[int], None],  # called with the number of cases that are done
+    ) -> list[RunScore]:
+        """Score the method's answers to problems with their seeds, all made in one process."""
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
-        jobs = {seed: self._job(problem, seed) for seed in seeds}
+        jobs = {case: self._job(*case) for case in cases}
 
         def there(job: Path) -> bool:
             return _sign(out, job).is_file()
 
         missing = [job for job in jobs.values() if not there(job)]
-        on_done(len(seeds) - len(missing))
+        on_done(len(cases) - len(missing))
         if missing:
             error = _run(method, out, missing, lambda: on_done(sum(map(there, jobs.values()))))
             for job in missing:
                 if not there(job):
                     _sign(out, job).write_text(json.dumps({"error": error}), encoding="utf-8")
-        return [_score(problem, method, seed, out, job) for seed, job in jobs.items()]
+        return [_score(problem, method, seed, out, job) for (problem, seed), job in jobs.items()]
 
     def complete(self, problem: Problem, method: Method, seeds: Sequence[int]) -> bool:
         """Whether all answers are there already."""
@@ -96,6 +106,8 @@ class Runs:
     def _job(self, problem: Problem, seed: int) -> Path:
         """The file of what a method is given; the answers to the tests are not in it."""
         given = _job_inputs(problem.sample(seed), noisy=problem.noise > 0.0, seed=seed)
+        if problem.correlation:
+            given["time"] = np.arange(float(problem.sizes[-1]))
         digest = hashlib.sha256()
         for name, values in given.items():
             digest.update(name.encode() + np.ascontiguousarray(values).tobytes())

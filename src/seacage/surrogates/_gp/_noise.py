@@ -26,7 +26,9 @@ NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
 FREEDOM = 4.0  # degrees of freedom of Student's t: outliers are common, and the variance exists
 SETTLING = 50  # steps of the fixed-point iteration for a case's noise factor
 ANCHORS = 20  # places that noise by input is learned at, at most
-# Of the log memory of noise that is correlated in time, in shares of the time of all cases
+# Of the part that lasts in time, of cases that are thus measured; and its log memory, in shares of
+# the time of all cases
+LASTING_PRIOR = (math.log(1e-3), 2.5)
 MEMORY_PRIOR = (math.log(0.05), 2.0)
 SWING = 1.5  # prior sd of the log variance of noise by input, about its mean
 # From the loss's gradient in each case's noise to its gradient in each log parameter
@@ -100,7 +102,7 @@ class CorrelatedNoise(WhiteNoise):
         return 2
 
     def prior(self) -> Prior:
-        return Prior.of(NOISE_PRIOR, NOISE_PRIOR, MEMORY_PRIOR)
+        return Prior.of(NOISE_PRIOR, LASTING_PRIOR, MEMORY_PRIOR)
 
     def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.full((len(x), 1), np.exp(log_parameters[:2]).sum())

@@ -87,3 +87,14 @@ def test_a_bridle_is_taut_where_it_holds_and_slack_in_the_lee():
     towards = 0.9 * np.array([[np.cos(np.pi / 6.0), np.sin(np.pi / 6.0)]])
     assert functions.cage_high(towards)[0] > 20.0
     assert 0.0 < functions.cage_high(-towards)[0] < functions.cage_high(np.zeros((1, 2)))[0]
+
+
+def test_franke_is_as_published_at_a_hill_and_its_upper_levels_are_of_the_one_below():
+    x = np.array([[2.0 / 9.0, 2.0 / 9.0]])
+    # 0.75 for the hill itself; slope, second hill and dip by hand
+    others = 0.75 * np.exp(-9.0 / 49.0 - 0.3) + 0.5 * np.exp(-6.5) - 0.2 * np.exp(-29.0)
+    low = functions.franke_low(x)
+    assert low == pytest.approx([0.75 + others])
+    middle = np.exp(-1.4 * low) * np.cos(3.5 * np.pi * low)
+    assert functions.franke_middle(x) == pytest.approx(middle)
+    assert functions.franke_high(x) == pytest.approx(np.sin(2.0 * np.pi * middle))

@@ -33,7 +33,14 @@ def refuse(levels, *, noisy, seed):
 def vanish(levels, *, noisy, seed):
     raise SystemExit("gone")
 
-METHODS = {"mean": mean, "refuse": refuse, "vanish": vanish}
+def timed(levels, *, noisy, seed, time=None):
+    if time is not None and len(time) != len(levels[-1][0]):
+        raise ValueError("times of other cases")
+    if (time is not None) != noisy:
+        raise ValueError("times and noise go together here")
+    return mean(levels, noisy=noisy, seed=seed)
+
+METHODS = {"mean": mean, "refuse": refuse, "vanish": vanish, "timed": timed}
 """
 
 
@@ -90,6 +97,15 @@ def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
     assert np.isnan(run.rmse)
     whole = summary([run, run])
     assert (whole.seeds, whole.failures) == (0, 2)
+
+
+def test_several_problems_are_answered_together_with_times_where_noise_lasts(tmp_path, problem):
+    cases = [(problem, 5), (problem.disturbed(), 5), (problem.disturbed(), 6)]
+    scores = Runs(folder=tmp_path).ensure_all(
+        cases, method(tmp_path, "timed"), on_done=lambda _: None
+    )
+    assert [one.error for one in scores] == [None] * 3
+    assert [(one.problem, one.seed) for one in scores] == [(one.name, seed) for one, seed in cases]
 
 
 def test_a_process_that_dies_is_reported(tmp_path, problem):
