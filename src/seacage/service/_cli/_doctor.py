@@ -22,6 +22,7 @@ _EXTRAS = {
     "archive": ("pyarrow",),
     "ros": ("rosbags",),
     "opcua": ("asyncua",),
+    "bench": ("sklearn",),
 }
 Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 
@@ -152,6 +153,6 @@ def _extensions() -> Iterator[tuple[str, Found]]:
 
 def _version(package: str) -> str:
     try:
-        return version(package)
+        return version({"sklearn": "scikit-learn"}.get(package, package))
     except PackageNotFoundError:
         return "?"
