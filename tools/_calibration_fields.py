@@ -14,10 +14,9 @@ from _family_fields import (
     with_every_shackle,
     without_extra,
 )
-from score_net import true_nets
 
 from seacage.cage import Cage
-from seacage.campaigns import TruthParameters, VirtualField
+from seacage.campaigns import TruthParameters, VirtualField, true_nets
 from seacage.records import Record
 from seacage.surrogates import AdaptiveConformal
 from seacage.twin import Answer, Metocean, Training, Twin, train
@@ -97,7 +96,8 @@ def answers_of(base: Twin, number: int, given: argparse.Namespace, *, heavy: boo
         if not stored.is_dir():
             train(base.cage, None, record, base=base, training=Training(restarts=1)).write(stored)
         nets = scored_times(field.truth.buoy)[::NODE_TIMES]
-        net = true_nets(full, hidden, field.truth.buoy, number, nets, given.out / folder)
+        where = {"kept": given.out / folder, "workers": given.workers}
+        net = true_nets(full, field.truth.buoy, nets, hidden=hidden, seed=number, **where)
         _answers(Twin.read(stored), replace(field, record=record), full, hidden, net).write(kept)
     return Answers.read(kept)
 

@@ -12,11 +12,15 @@ import numpy as np
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
 from seacage.records import FieldRecord, Record
+from seacage.studies._bench._cases import values_at
+from seacage.studies._bench._scores import share_by_third
+from seacage.studies._bench._study import Water
+
+__all__ = ["Water", "field_of", "options_for", "scored_times", "share_by_third", "values_at"]
 
 START, DAYS, SCORED_FROM = datetime(2020, 1, 18, tzinfo=UTC), 50.0, 25.0
 EVERY = np.timedelta64(1800, "s")
 _EXTRA = "extra-"  # before the names of the shackles that the twin does not see
-Water = Literal["tame", "coastal"]
 
 
 def options_for(doc: str | None, *, truths: str) -> argparse.ArgumentParser:
@@ -85,16 +89,3 @@ def scored_times(buoy: Record) -> np.ndarray:
     since = buoy.time - buoy.time[0]
     late = since >= np.timedelta64(int(86400 * SCORED_FROM), "s")
     return buoy.time[late & (since % EVERY == np.timedelta64(0))]
-
-
-def values_at(record: Record, time: np.ndarray) -> np.ndarray:
-    """What a sensor of the truth reads at some times [N] or [m]."""
-    ((key, values),) = record.values.items()
-    at = np.minimum(np.searchsorted(record.time, time), len(record) - 1)
-    return values[at] * (1e3 if key == "tension_kn" else 1.0)
-
-
-def share_by_third(held: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Share that intervals hold in each third of the load."""
-    third = np.digitize(load, np.quantile(load, [1 / 3, 2 / 3]))
-    return np.array([held[third == one].mean() for one in range(3)])

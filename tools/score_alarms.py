@@ -13,26 +13,24 @@ Fields and residuals are kept in OUT; stopped, it goes on. Virtual field.
 
 import argparse
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime, timedelta
 from functools import partial
 from typing import Any
 
 import numpy as np
 from _family_fields import SCORED_FROM, START, Water, options_for, values_at
-from scipy.stats import chi2
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, generated_current, virtual_field
 from seacage.records import FieldRecord, read_campaign
-from seacage.twin import AlarmPolicy, FaultDetectorSettings, Metocean, Training, Twin, train
-from seacage.twin._alarms._alarm import Action, Alarm
-from seacage.twin._alarms._lifecycle import evaluate
-from seacage.twin._faults import FaultDetector
+from seacage.studies._bench._scores import poisson_interval
+from seacage.studies._bench._stretches import without_outages
+from seacage.twin import FaultWatch, Training, Twin, block_residuals, residual_blocks, train
+from seacage.twin._faults._fault_watch import SETTINGS
 from seacage.twin._faults._residuals import ResidualBlock
-from seacage.twin._faults._sensor import SensorMonitor
 
 SHACKLES = (5.0, 5.5)  # days that train these; the depth sensors train until ``SCORED_FROM``
 CLEANED_EVERY = 48.0  # days after which the family's cleanings come again
@@ -41,8 +39,6 @@ QUIET_DAYS, WATCHED_DAYS = 7.0, 14.0  # before a fault, and for how long it is l
 AFTER_CLEANING = 14.0  # days
 DAY = 86400.0
 BASE: list[Twin] = []  # of a process: the twin that has learned the low fidelity
-SETTINGS = FaultDetectorSettings()
-POLICY = AlarmPolicy.default()
 
 
 def main() -> None:
@@ -94,14 +90,9 @@ def _kept_residuals(water: Water, given: argparse.Namespace, number: int) -> dic
 def _without_faults(hidden: TruthParameters, days: float) -> TruthParameters:
     rounds = CLEANED_EVERY * np.arange(int(days / CLEANED_EVERY) + 1)
     cleaned = np.sort(np.add.outer(rounds, hidden.fouling.cleaned_days).ravel())
-    none = dict.fromkeys(("lost_share", "gaps_per_week", "spikes_per_week"), 0.0)
-    none |= dict.fromkeys(("stuck_per_week", "radio_losses_per_week"), 0.0)
     return replace(
-        hidden,
+        without_outages(hidden),
         fouling=replace(hidden.fouling, cleaned_days=tuple(cleaned.tolist())),
-        shackle=replace(hidden.shackle, windows=((0.0, 1e9),)),
-        depth=replace(hidden.depth, drift_m_week=0.0),
-        outages=replace(hidden.outages, **none),
     )
 
 
@@ -116,91 +107,29 @@ def _taught(field: FieldRecord) -> FieldRecord:
 
 def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
     """Residuals of each half hour after the training, as the fault detector forms them."""
-    names = tuple(name for name in twin.sensor_names if name in twin.models.upper)
-    columns = [twin.sensor_names.index(name) for name in names]
-    time = field.sensors[names[0]].time
+    time = next(iter(field.sensors.values())).time
     time = time[time >= field.buoy.time[0] + np.timedelta64(int(SCORED_FROM * DAY), "s")]
-    water = twin.travel_time.water_at(field.buoy, time)
-    answer = twin.predict(water)
-    known = answer.valid & answer.in_domain
-    read = np.column_stack([values_at(field.sensors[name], time) for name in names])
-    error = read - answer.sensor.mean[:, columns]
+    read = np.column_stack([values_at(field.sensors[name], time) for name in twin.sensor_names])
     number = time.astype("datetime64[s]").astype(int) // int(SETTINGS.block_s)
-    rows = {int(one): np.flatnonzero(number == one) for one in np.unique(number[known])}
-    current = np.array(
-        [water.current_velocity[own[known[own]]].mean(axis=0) for own in rows.values()]
-    )
-    here = Metocean.without_waves(current)
-    around = twin.predict(here.joined(here, here.sides(SETTINGS.current_step)))
-    _, east, west, north, south = around.sensor.mean[:, columns].reshape(5, len(rows), -1)
-    gradient = np.stack([east - west, north - south], axis=2) / (2.0 * SETTINGS.current_step)
-    return {
-        "sensors": np.array(names),
-        "number": np.array(list(rows)),
-        "residual": np.array([error[inside].mean(axis=0) for inside in rows.values()]),
-        "std": around.sensor.std[: len(rows), columns],
-        "own": np.array([twin.models.upper[name].spread.by == "own" for name in names]),
-        "gradient": gradient,
-        "current": current,
-        "tension": around.bridle_tension.mean[: len(rows)],
-        "start": field.buoy.time[:1].astype("datetime64[s]").astype(int),
-    }
+    start = field.buoy.time[:1].astype("datetime64[s]").astype(int)
+    return {**block_residuals(twin, field.buoy, time, read, number), "start": start}
 
 
 def _blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
     """The blocks by the day of the record at which they end."""
-    share = np.where(kept["own"], SETTINGS.own_share, SETTINGS.carried_share)
     days = ((kept["number"] + 1) * SETTINGS.block_s - kept["start"]) / DAY
-    return {
-        float(day): ResidualBlock(
-            sensors=tuple(kept["sensors"].tolist()),
-            received=np.ones(len(share), dtype=bool),
-            residual=kept["residual"][row],
-            own_sd=kept["std"][row] * share,
-            gradient=kept["gradient"][row],
-            current=kept["current"][row],
-            tension=kept["tension"][row],
-        )
-        for row, day in enumerate(days)
-    }
-
-
-@dataclass
-class Watch:
-    """The fault detector and its alarms, block by block."""
-
-    cage: Cage
-    detector: FaultDetector
-    alarms: dict[str, Alarm]
-
-    def see(self, day: float, block: ResidualBlock) -> Iterator[str]:
-        """Take a block in, and name the alarms that are raised."""
-        active = frozenset(name for name, alarm in self.alarms.items() if alarm.active)
-        self.detector = self.detector.updated(block, self.cage, SETTINGS, active=active)
-        most = max((value for _, value in self.detector.ranking()), default=0.0)
-        if not active and most < SETTINGS.limit:
-            return  # nothing is raised, and nothing waits to be cleared
-        for one in self.detector.inputs(self.cage, SETTINGS):
-            alarm = self.alarms.get(one.alarm, Alarm(name=one.alarm))
-            alarm, lines = evaluate(alarm, one.value, POLICY.limit(one.alarm), _at(day))
-            self.alarms[one.alarm] = alarm
-            yield from (line.alarm for line in lines if line.action is Action.RAISED)
-
-    def copied(self) -> "Watch":
-        """Another that goes its own way from here."""
-        return replace(self, alarms=dict(self.alarms))
+    return dict(zip(days.tolist(), residual_blocks(kept), strict=True))
 
 
 def _watched(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[str, Any]:
     """What is raised without a fault, and the days until each fault is."""
     blocks, names = _blocks_of(kept), kept["sensors"].tolist()
-    monitors = {name: SensorMonitor() for name in names}
-    watch = Watch(cage, FaultDetector(monitors=monitors), {})
+    watch = FaultWatch.over(cage, names)
     raised, known = list[tuple[str, float]](), None
     for day, block in blocks.items():
         if known is None and day >= SCORED_FROM + QUIET_DAYS:
             known = watch.copied()
-        raised += [(name, round(day, 2)) for name in watch.see(day, block)]
+        raised += [(name, round(day, 2)) for name in watch.see(_at(day), block)]
     assert known is not None
     late = {day: one for day, one in blocks.items() if day >= SCORED_FROM + QUIET_DAYS}
     return {
@@ -233,7 +162,7 @@ FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
 
 
 def _delay(
-    watch: Watch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
+    watch: FaultWatch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
 ) -> float | None:
     """Days until a fault of a sensor raises its alarm; None where none is in time."""
     first = next(iter(blocks))
@@ -242,7 +171,7 @@ def _delay(
             break
         residual = block.residual.copy()
         residual[row] += _shift(fault, watch.cage, block, row, day - first)
-        raised = list(watch.see(day, replace(block, residual=residual)))
+        raised = list(watch.see(_at(day), replace(block, residual=residual)))
         if f"irregular.{block.sensors[row]}" in raised:
             return day - first
     return None
@@ -259,7 +188,7 @@ def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
         print(f"{water}, truth {number}: {one['days']:.0f} days, {dict(own) or 'none'}")
         years, false = years + one["days"] / 365.0, false + own
         cleaned += len(one["raised"]) - own.total()
-    low, high = _poisson_interval(false.total())
+    low, high = poisson_interval(false.total())
     print(
         f"{water}: {false.total()} false alarms in {years:.1f} cage-years, "
         f"{false.total() / years:.2f} a year [{low / years:.2f}, {high / years:.2f}]; "
@@ -275,12 +204,6 @@ def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
 def _by_cleaning(alarm: str, day: float, one: Mapping[str, Any]) -> bool:
     """Whether it speaks of the drag that a cleaning took."""
     return alarm == "net.net" and any(0.0 <= day - c <= AFTER_CLEANING for c in one["cleaned"])
-
-
-def _poisson_interval(count: int) -> tuple[float, float]:
-    """95 % interval of an expected number. Source: Garwood (1936)."""
-    low = 0.5 * float(chi2.ppf(0.025, 2 * count)) if count else 0.0
-    return low, 0.5 * float(chi2.ppf(0.975, 2 * count + 2))
 
 
 if __name__ == "__main__":

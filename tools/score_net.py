@@ -12,28 +12,16 @@ import argparse
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 from _family_fields import field_of, options_for, scored_times, share_by_third
 
 from seacage.cage import Cage
-from seacage.campaigns import TruthParameters
-from seacage.campaigns._virtual_field._field import current_over_net
-from seacage.campaigns._virtual_field._responses import (
-    _DIRECTIONS,
-    _GROWTHS,
-    _HELD_OUT_GROWTH,
-    _SPEEDS,
-    Responses,
-)
-from seacage.campaigns._virtual_field._timetable import reading_times
-from seacage.records import Record, read_campaign
+from seacage.campaigns import TruthParameters, true_nets
+from seacage.records import read_campaign
 from seacage.twin import Training, Twin, train
 
 EVERY = 12  # half hours of those scored
-ABOVE = 1000.0  # m, added to all coordinates, which the responses hold above zero
-DAY = 86400.0
 BASE: list[Twin] = []  # of a process: the twin that has learned the low fidelity
 
 
@@ -65,7 +53,8 @@ def _score(given: argparse.Namespace, number: int) -> Mapping[str, np.ndarray]:
     buoy = field.truth.buoy
     time = scored_times(buoy)[::EVERY]
     hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
-    true = true_nets(base.cage, hidden, buoy, number, time, given.out / f"{water}-{number}")
+    kept = given.out / f"{water}-{number}"
+    true = true_nets(base.cage, buoy, time, hidden=hidden, seed=number, kept=kept, workers=1)
     low, best = (one.predict(one.travel_time.water_at(buoy, time)) for one in (base, twin))
     volume = base.cage.volume(true) / twin.models.still_volume
     error, of_low = true - best.node_position, true - low.node_position
@@ -95,31 +84,6 @@ def _summary(
     held = np.abs(error) <= half
     ratio = off / float(np.sqrt(np.mean(of_low**2)))
     return np.array([ratio, off, held.mean(), half.mean(), *share_by_third(held, size)])
-
-
-def true_nets(
-    cage: Cage, hidden: TruthParameters, buoy: Record, seed: int, time: np.ndarray, kept: Path
-) -> np.ndarray:
-    """Positions of the true net's nodes at some times [m], from the equilibria of its field."""
-    campaigns = {one.cage_toml: one for one in map(read_campaign, kept.iterdir())}
-    still, *moving = (
-        ABOVE + campaigns[hidden.true_cage(cage, growth).to_toml()].node_position
-        for growth in (_HELD_OUT_GROWTH, *_GROWTHS)
-    )
-    shape = len(_SPEEDS), len(_DIRECTIONS), still[0].size
-    around = np.broadcast_to(still[0].ravel(), (1, *shape[1:]))
-    answers = Responses(
-        sensor_names=tuple(f"coordinate {k}" for k in range(3 * cage.node_count)),
-        speed=np.array([0.0, *_SPEEDS]),
-        direction=np.deg2rad(_DIRECTIONS),
-        growth=np.array(_GROWTHS),
-        value=np.stack([np.concatenate([around, one.reshape(shape)]) for one in moving]),
-    )
-    seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
-    rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))
-    velocity = current_over_net(buoy, seconds, hidden=hidden, seed=seed)[rows]
-    flat = answers.at(velocity, hidden.fouling.grown(seconds[rows] / DAY))
-    return flat.reshape(len(rows), -1, 3) - ABOVE
 
 
 def _geometric(ratio: np.ndarray) -> float:

@@ -92,7 +92,8 @@ def _scores(cage: Cage, base: Twin, field: VirtualField) -> Iterator[Score]:
         level_1 = answer.sensor_low.mean[:, column]
         found = {TWIN: mean, "low fidelity": level_1}
         if name in twin.models.upper:
-            found |= predict_by_sensor_baselines(twin, record, name, water, TRAINING)
+            baselines = predict_by_sensor_baselines(twin, record, name, water, TRAINING)
+            found |= {one: each.mean for one, each in baselines.items()}
         error = {one: float(np.mean(np.abs(each - true))) for one, each in found.items()}
         inside = np.abs(mean - true) <= 1.96 * std
         coverage = share_by_third(inside, level_1).tolist()

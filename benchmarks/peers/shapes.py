@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 
 # The peers live in an environment of their own.
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportArgumentType=false
 
 
 def ezyrb(given, approximation):

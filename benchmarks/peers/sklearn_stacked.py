@@ -6,7 +6,7 @@ and white noise, 3 restarts. Its answer counts the noise it has learned in.
 """
 
 # The peers live in an environment of their own.
-# pyright: reportMissingImports=false
+# pyright: reportMissingImports=false, reportArgumentType=false
 
 import numpy as np
 from sklearn.gaussian_process import GaussianProcessRegressor

@@ -15,7 +15,7 @@ from seacage.cage import Cage
 
 ROOT = Path(__file__).parents[2]
 FROZEN = ROOT / "tests/frozen/0.1.0"
-EXTRAS = ["sim", "gcn", "postgres", "archive", "ros", "opcua", "adcp"]
+EXTRAS = ["sim", "gcn", "postgres", "archive", "ros", "opcua", "adcp", "bench"]
 SEA = "--current-speed 0.2 --current-to 90"
 POINT = f"--point 18,0,-8 --twin twin {SEA}"
 COMMANDS = {

@@ -39,7 +39,6 @@ def kept_answers(damage: str) -> Responses:
     with np.load(_KEPT) as kept:
         value = kept[damage].astype(float)
     return Responses(
-        sensor_names=ACE.sensor_names,
         speed=np.array([0.0, *_SPEEDS]),
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),

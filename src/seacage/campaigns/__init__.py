@@ -8,6 +8,7 @@ from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._virtual_field._events import Event, read_events
 from seacage.campaigns._virtual_field._field import VirtualField, virtual_field, virtual_field_share
 from seacage.campaigns._virtual_field._timetable import Timetable
+from seacage.campaigns._virtual_field._true_nets import true_nets
 from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shapes
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 
@@ -26,6 +27,7 @@ __all__ = [
     "read_events",
     "run_campaign",
     "run_share",
+    "true_nets",
     "true_shapes",
     "virtual_field",
     "virtual_field_share",

@@ -26,6 +26,7 @@ def error_figure(
     *,
     ours: Sequence[int],  # which of the methods are ours, the first of them the one to look at
     label: str = "Root mean square error",
+    log: bool = True,  # scale of the errors
 ) -> Figure:
     """Error of each method on each problem: a dot per seed, and a mark at the mean."""
     with _style.style():
@@ -35,8 +36,9 @@ def error_figure(
                 colour = _colour(place, ours)
                 axes.plot(error, np.full(len(error), place), "o", color=colour, ms=3.0, alpha=0.45)
                 axes.plot([np.mean(error)], [place], "d", color=colour, mec="white", ms=7.0)
-            axes.set_xscale("log")
-            _few_ticks(axes, contest.error)
+            if log:
+                axes.set_xscale("log")
+                _few_ticks(axes, contest.error)
     return figure
 
 

@@ -1,5 +1,6 @@
 """Whole experiments, from campaign to report."""
 
+from seacage.studies._bench._study import BenchStudy, bench_study
 from seacage.studies._benchmarks._study import BenchmarkStudy, benchmark_study
 from seacage.studies._demonstration import Demonstration, prepare_demonstration
 from seacage.studies._fidelity._study import FidelityStudy, fidelity_study
@@ -20,6 +21,7 @@ from seacage.studies._shape_discrepancy import (
 
 __all__ = [
     "BaselineScore",
+    "BenchStudy",
     "BenchmarkStudy",
     "Demonstration",
     "Errors",
@@ -31,6 +33,7 @@ __all__ = [
     "SensorScore",
     "ShapeScore",
     "WayScore",
+    "bench_study",
     "benchmark_study",
     "fidelity_study",
     "learned_discrepancy",

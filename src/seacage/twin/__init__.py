@@ -19,6 +19,7 @@ from seacage.twin._assess import assess
 from seacage.twin._correction import Correction, CurrentChange, FixedPrediction, Spread
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._events import Answered, Event, Flagged, StreamBack, StreamSilent
+from seacage.twin._faults import FaultWatch, block_residuals, residual_blocks
 from seacage.twin._interval_factors import ADAPTATION_BLOCK, adapted_at, adapted_at_us, block_begin
 from seacage.twin._lines._line_correction import LineCorrection
 from seacage.twin._metocean import Metocean
@@ -64,6 +65,7 @@ __all__ = [
     "Discrepancy",
     "Event",
     "FaultDetectorSettings",
+    "FaultWatch",
     "FixedPrediction",
     "Flagged",
     "IfParted",
@@ -99,6 +101,7 @@ __all__ = [
     "align",
     "assess",
     "block_begin",
+    "block_residuals",
     "damage_of_minutes",
     "inspection_path",
     "interval_reason",
@@ -107,6 +110,7 @@ __all__ = [
     "remark",
     "replay",
     "representative_lines",
+    "residual_blocks",
     "sensor_windows",
     "shackle_loads",
     "shelve",

@@ -8,7 +8,7 @@ import numpy as np
 
 from seacage.conventions import InputError, read_packaged_table
 
-Water = Literal["tame", "coastal"]
+Water = Literal["tame", "coastal", "shallow"]
 WATERS: tuple[Water, ...] = get_args(Water)
 
 
@@ -23,6 +23,8 @@ def draw_truth(
     _check_number(number, family["numbers"], unseal=unseal)
     if water not in WATERS:
         raise InputError(f"Truth {number}: water {water!r} is none of {', '.join(WATERS)}.")
+    if water != "shallow":
+        del family["water"]["shallow"]  # came later, and changes the identity of no other truth
     outside = family["outside"].get(str(number), {})
     drawn = {**table, "seed": number}
     for part in (family["cage"], family["water"][water], outside):

@@ -1,5 +1,6 @@
 """The true cage's answers on a grid of currents and growths, and smoothly between them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -35,7 +36,6 @@ _HELD_OUT_SHEARED = Plan.named("profile", 0, 16)
 class Responses:
     """Error-free readings of every sensor of a cage, over currents and growths."""
 
-    sensor_names: tuple[str, ...]  # as the cage names them
     speed: Float[np.ndarray, " speed"]  # grid of the current's speed, from 0 [m/s]
     # Grid of where it goes: all round, evenly, an even number [rad], clockwise from north
     direction: Float[np.ndarray, " direction"]
@@ -74,9 +74,9 @@ class Responses:
         weights = np.ones((1, len(growth)))
         if len(self.growth) > 1:
             weights = BarycentricInterpolator(self.growth, np.eye(len(self.growth)))(growth).T
-        answers = np.zeros((len(speed), len(self.sensor_names)))
+        answers = np.zeros((len(speed), self.value.shape[-1]))
         for weight, level in zip(weights, self.value, strict=True):
-            for sensor in range(len(self.sensor_names)):
+            for sensor in range(self.value.shape[-1]):
                 answers[:, sensor] += weight * self._surface(level[..., sensor], speed, direction)
         return answers
 
@@ -101,6 +101,7 @@ def true_responses(
     hidden: TruthParameters,
     *,
     sheared: bool = False,
+    readings: "Callable[[Cage, CampaignRecord], CaseSensor] | None" = None,
     store: Path,
     workers: int | None = None,
     progress: Progress | None = None,
@@ -108,7 +109,8 @@ def true_responses(
     """Settle the true cage on the grid, and at some currents between for the error.
 
     ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``sheared``: whether to find how a
-    shear changes the answers, at half the growth. ``store``: folder of the campaigns,
+    shear changes the answers, at half the growth. ``readings``: what to interpolate of the settled
+    cases, in place of the sensors. ``store``: folder of the campaigns,
     which are kept: another call with the same cage, hidden parameters and version reads them.
     ``progress``: called as ("virtual field", done, total) in cases.
 
@@ -137,19 +139,18 @@ def true_responses(
         truth = hidden.true_cage(cage, growth)
         out = store / campaign_key(truth, plan, by)
         run_share(truth, plan, out, by=by, workers=workers, progress=report_part)
-        answers.append(_readings(cage, read_campaign(out)))
+        answers.append((readings or _readings)(cage, read_campaign(out)))
         before += len(plan)
     *moving, settled = answers[: len(_GROWTHS) + 1]
     # cases in the order of the grid's plan; still water looks the same in all directions
     by_speed = np.stack(moving).reshape(len(_GROWTHS), len(_SPEEDS), len(_DIRECTIONS), -1)
     still_water = np.broadcast_to(settled[0], by_speed[:, :1].shape)
     responses = Responses(
-        sensor_names=cage.sensor_names,
         speed=np.array([0.0, *_SPEEDS]),
         direction=np.deg2rad(_DIRECTIONS),
         growth=np.array(_GROWTHS),
         value=np.concatenate([still_water, by_speed], axis=1),
-        by_shear=_slopes(cage, answers[len(_GROWTHS) + 1]) if sheared else (),
+        by_shear=_slopes(answers[len(_GROWTHS) + 1]) if sheared else (),
     )
     velocity = np.array([sea.current_velocity for sea in between.seas])
     interpolated = responses.at(velocity, np.full(len(between), _HELD_OUT_GROWTH))
@@ -177,14 +178,13 @@ def _grid_of_shears() -> Plan:
     )
 
 
-def _slopes(cage: Cage, settled: CaseSensor) -> tuple[Responses, Responses]:
+def _slopes(settled: CaseSensor) -> tuple[Responses, Responses]:
     """What a shear of 1 m/s to the east and to the north adds; in still water nothing."""
     shape = len(_SHEARED_SPEEDS), len(_DIRECTIONS[::2]), 4, settled.shape[1]
     north, east, south, west = np.moveaxis(settled.reshape(shape), 2, 0) / (2.0 * _SHEAR)
     changes = (np.concatenate([0.0 * one[:1], one])[None] for one in (east - west, north - south))
     first, second = (
         Responses(
-            sensor_names=cage.sensor_names,
             speed=np.array([0.0, *_SHEARED_SPEEDS]),
             direction=np.deg2rad(_DIRECTIONS[::2]),
             growth=np.array([_SHEARED_GROWTH]),

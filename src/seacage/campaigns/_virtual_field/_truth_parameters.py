@@ -269,8 +269,8 @@ class TruthParameters:
             them; 201 to 204 lie outside the ranges: another screen law, a current sheared twice,
             an uneven frame, a sinker tube that lost its weight on one side.
         water
-            "tame" as on the shelf, or "coastal", with the shear that two ADCPs measured. Of one
-            number both have the same cage.
+            "tame" as on the shelf, "coastal", with the shear that two ADCPs measured, or "shallow",
+            as the one in the shallower water did. Of one number all have the same cage.
         unseal
             Give a sealed one.
 

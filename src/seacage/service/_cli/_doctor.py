@@ -23,6 +23,7 @@ _EXTRAS = {
     "ros": ("rosbags",),
     "opcua": ("asyncua",),
     "adcp": ("mhkit",),
+    "bench": ("sklearn",),
 }
 Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 
@@ -153,6 +154,6 @@ def _extensions() -> Iterator[tuple[str, Found]]:
 
 def _version(package: str) -> str:
     try:
-        return version(package)
+        return version({"sklearn": "scikit-learn"}.get(package, package))
     except PackageNotFoundError:
         return "?"

@@ -49,7 +49,7 @@ def virtual(
     seed: _options.Seed = 0,
     hidden: _options.InFile = None,
     truth: int | None = None,
-    water: Literal["tame", "coastal"] = "tame",
+    water: Literal["tame", "coastal", "shallow"] = "tame",
     unseal: Annotated[bool, typer.Option("--unseal")] = False,
     cage: _options.CageName = "ace",
     workers: _options.Workers = None,
@@ -84,7 +84,7 @@ def virtual(
         hidden: Hidden parameters; else those shipped.
         truth: Number of a hidden cage of the family: 1 to 60; 101 to 110, sealed; 201 to 204,
             outside it.
-        water: Of that truth: as on the shelf, or as two coastal ADCPs measured it.
+        water: Of that truth: as on the shelf, as two ADCPs measured it, or as the shallower did.
         unseal: Give a sealed truth, for a judgement that is the last.
         share: Only simulate the I-th of N shares of the hours, from 0; others do the rest.
     """

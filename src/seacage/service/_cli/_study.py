@@ -2,7 +2,7 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -11,7 +11,13 @@ from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_
 from seacage.service._cli._score import error_rows
 
 if TYPE_CHECKING:
-    from seacage.studies import BenchmarkStudy, FidelityStudy, PaperStudy, ShapeScore
+    from seacage.studies import (
+        BenchmarkStudy,
+        BenchStudy,
+        FidelityStudy,
+        PaperStudy,
+        ShapeScore,
+    )
 
 ReportFolder = Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")]
 group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")
@@ -85,7 +91,9 @@ def paper(
     )
 
 
-def _files(study: "PaperStudy | FidelityStudy | BenchmarkStudy", origin: str) -> dict[str, object]:
+def _files(
+    study: "PaperStudy | FidelityStudy | BenchmarkStudy | BenchStudy", origin: str
+) -> dict[str, object]:
     return {"report": str(study.report), "scores": str(study.scores), "origin": origin}
 
 
@@ -199,7 +207,7 @@ def benchmarks(
         study = benchmark_study(
             out,
             peers=peers,
-            seeds=_seeds(seeds),
+            seeds=_numbers("seeds", seeds),
             quick=quick,
             fresh=fresh,
             kept=kept,
@@ -214,9 +222,71 @@ def benchmarks(
     )
 
 
-def _seeds(written: str) -> range:
-    """The seeds of ``5``, or of ``0-9``."""
+@group.command()
+@guard
+def bench(
+    *,
+    out: ReportFolder = Path("bench"),
+    quick: Annotated[bool, typer.Option("--quick/--full")] = True,
+    truths: str = "1-2",
+    water: Literal["tame", "coastal", "shallow"] | None = None,
+    current: InFile = None,
+    row: list[Path] | None = None,
+    surrogate: list[str] | None = None,
+    seed: Seed = 0,
+    unseal: Annotated[bool, typer.Option("--unseal")] = False,
+    workers: Workers = None,
+) -> None:
+    """Score methods, yours too, on hidden cages in five tasks.
+
+    Mean load, peak, shape, alarm and calibration, on virtual fields whose truth is opened when all
+    predictions are on disk. It ends in one HTML report. Stopped, the same command goes on where it
+    was.
+
+    Example:
+        seacage study bench --quick --out bench
+        seacage study bench --quick --out bench --row my-method
+
+    Options:
+        quick: A coarse net and less of everything, or the whole net.
+        truths: First and last number of the family of hidden cages.
+        water: One of the three; else all.
+        current: A record of a buoy's current; else generated ones. Half of its days train.
+        row: A folder of predictions by another method; its name is the row's.
+        surrogate: A surrogate of another package, for the mean loads.
+        seed: Of weather, noise, faults and waves.
+        unseal: Take sealed truths, for a judgement that is the last.
+    """
+    from seacage.studies import bench_study
+
+    with progress_bar() as progress:
+        study = bench_study(
+            out,
+            quick=quick,
+            truths=_numbers("truths", truths),
+            waters=("tame", "coastal", "shallow") if water is None else (water,),
+            current=current,
+            rows=row or (),
+            surrogates=surrogate or (),
+            seed=seed,
+            unseal=unseal,
+            workers=workers,
+            progress=progress,
+        )
+    cases = {name: str(folder) for name, folder in study.cases.items()}
+    report(
+        _files(study, "virtual field")
+        | {"cases": cases, "means": [asdict(one) for one in study.means]},
+        rows=[
+            *((f"{one.task}, {one.row}", f"{one.error:.3g} {one.unit}") for one in study.means),
+            ("Report", f"{study.report} (virtual field)"),
+        ],
+    )
+
+
+def _numbers(option: str, written: str) -> range:
+    """The numbers of ``5``, or of ``0-9``."""
     first, dash, last = written.partition("-")
     if not first.isdecimal() or (dash and not last.isdecimal()):
-        raise refusal(f"--seeds {written} is not a range of seeds. Write 0-9, or a single one.")
+        raise refusal(f"--{option} {written} is not a range. Write 0-9, or a single number.")
     return range(int(first), int(last or first) + 1)

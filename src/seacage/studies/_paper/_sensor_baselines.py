@@ -12,7 +12,7 @@ from seacage.studies._interval import Interval, by_day
 from seacage.studies._paper._boosted_trees import predict_by_trees
 from seacage.studies._sensor_scores import MEAN_S, PEOPLE
 from seacage.studies._split import unseen
-from seacage.surrogates import AR1, GaussianProcess
+from seacage.surrogates import AR1, GaussianProcess, Prediction
 from seacage.twin import Metocean, Training, Twin, align
 
 TWIN = "twin"
@@ -46,7 +46,8 @@ def score_sensor_baselines(
         unit, factor = PEOPLE[answer.sensor_units[column]]
         found = {TWIN: answer.sensor.mean[:, column]}
         given = twin, teaching, name, after.metocean, training
-        found |= predict_by_sensor_baselines(*given, learners=learners)
+        others = predict_by_sensor_baselines(*given, learners=learners)
+        found |= {one: each.mean for one, each in others.items()}
         error = {one: factor * np.abs(each - after.value) for one, each in found.items()}
         over = {one: error[one] - error[TWIN] for one in error if one != TWIN}
         day, seed = after.time.astype("datetime64[D]"), training.seed
@@ -94,20 +95,22 @@ def predict_by_sensor_baselines(
     training: Training,
     *,
     learners: Sequence[Extension] = (),
-) -> dict[str, Float[np.ndarray, " row"]]:
-    """Baselines' predictions of a sensor with level 2, by name [N] or [m].
+    trees: Callable[..., Float[np.ndarray, " row"]] | None = predict_by_trees,
+) -> dict[str, Prediction]:
+    """Baselines' predictions of a sensor's readings, by name [N] or [m]; NaN where no sd is known.
 
     A Gaussian process of the water alone, AR1 on level 1, least squares on (level 1, u, u^2,
     harmonics), and boosted trees of the water.
 
     ``teaching``, ``training``: the record and the settings that the twin was trained with.
+    ``trees``: of features, values and other features; None leaves trees out.
     """
-    window = twin.provenance.training_windows[name]
+    window = twin.provenance.training_windows.get(name)
     pairs = align(
         teaching,
         name,
-        start=window.start,
-        end=window.end,
+        start=window and window.start,
+        end=window and window.end,
         mean_s=training.mean_s,
         travel_time=twin.travel_time,
     )
@@ -117,24 +120,31 @@ def predict_by_sensor_baselines(
     low, at_low = (lower.predict(one).mean for one in (x, there))
     line, at_line = _columns(low, x), _columns(at_low, there)
     ar1 = AR1(restarts=restarts).fit([(x, value)], seed=training.seed, lower=lower)
-    found = (
-        GaussianProcess(restarts=restarts).fit(x, value, seed=training.seed).predict(there).mean,
-        ar1.predict(there).mean,
-        at_line @ np.linalg.lstsq(line, value, rcond=None)[0],
-        predict_by_trees(x, value, there),
-    )
+    alone = GaussianProcess(restarts=restarts).fit(x, value, seed=training.seed)
+    found = [
+        alone.predict(there, noisy=True),
+        ar1.predict(there, noisy=True),
+        _without_sd(at_line @ np.linalg.lstsq(line, value, rcond=None)[0]),
+        *([_without_sd(trees(x, value, there))] if trees else []),
+    ]
     given, at = (np.column_stack([x, low]), value, training.seed), np.column_stack([there, at_low])
-    theirs = {one.title: call_extension(one.title, _mean_by, one, given, at) for one in learners}
-    return {**dict(zip(SENSOR_BASELINES, found, strict=True)), **theirs}
+    theirs = {one.title: call_extension(one.title, _predict_by, one, given, at) for one in learners}
+    return {**dict(zip(SENSOR_BASELINES, found, strict=False)), **theirs}
 
 
-def _mean_by(
+def _without_sd(mean: Float[np.ndarray, " row"]) -> Prediction:
+    return Prediction(mean=mean, std=np.full_like(mean, np.nan))
+
+
+def _predict_by(
     learner: Extension,
     given: tuple[np.ndarray, np.ndarray, int],
     at: Float[np.ndarray, "row feature"],
-) -> Float[np.ndarray, " row"]:
-    """Means by a surrogate of another package, whose last feature is level 1."""
-    return np.asarray_chkfinite(learner.value(*given).predict(at).mean).reshape(len(at))
+) -> Prediction:
+    """Prediction by a surrogate of another package, whose last feature is level 1."""
+    found = learner.value(*given).predict(at, noisy=True)
+    mean, std = (np.asarray_chkfinite(one).reshape(len(at)) for one in (found.mean, found.std))
+    return Prediction(mean=mean, std=std)
 
 
 def _columns(

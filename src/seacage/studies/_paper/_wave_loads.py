@@ -149,10 +149,10 @@ def _score(
     assert loads is not None
     assert emulator is not None
     low, there = (
-        _predict(emulator.predict(one.metocean, spread=False)[0], name, line)[0]
+        predict_statistic(emulator.predict(one.metocean, spread=False)[0], name, line)[0]
         for one in (before, after)
     )
-    best, lower, upper = _predict(loads, name, line)
+    best, lower, upper = predict_statistic(loads, name, line)
     corrected = not np.allclose(best, there)
     found = {LEVEL_2: best if corrected else there, LEVEL_1: there}
     found |= predict_by_baselines(name, before, after, low=low, there=there)
@@ -207,7 +207,7 @@ def predict_by_baselines(
     return {method: np.asarray(back(one)) for method, one in zip(BASELINES, found, strict=True)}
 
 
-def _predict(loads: Loads, name: str, line: int) -> tuple[Series, Series, Series]:
+def predict_statistic(loads: Loads, name: str, line: int) -> tuple[Series, Series, Series]:
     """Mean of a statistic of ten minutes, and the ends of its 95 % interval [N]."""
     if name == "mean":
         mean, half = loads.mean.mean[:, line], 1.96 * loads.mean.std[:, line]

@@ -87,7 +87,6 @@ def test_beside_a_simulated_cage_the_bins_are_those_of_its_weather(place: Place)
 
 def test_answers_are_linear_in_the_shear() -> None:
     grid = {
-        "sensor_names": ("depth-1",),
         "speed": np.array([0.0, 0.5, 1.0, 1.5]),
         "direction": np.deg2rad(np.arange(0.0, 360.0, 45.0)),
     }

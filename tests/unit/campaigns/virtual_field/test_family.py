@@ -56,7 +56,7 @@ def test_a_number_that_is_none_is_refused(number: int) -> None:
 
 
 def test_a_water_that_is_none_is_refused() -> None:
-    with pytest.raises(InputError, match="'estuary' is none of tame, coastal"):
+    with pytest.raises(InputError, match="'estuary' is none of tame, coastal, shallow"):
         draw_truth({}, 7, "estuary", unseal=False)
 
 
@@ -136,6 +136,33 @@ def test_coastal_water_lies_between_what_two_adcps_measured() -> None:
     np.testing.assert_allclose(statistics(least, "coastal"), western_shoal, rtol=0.25)
     np.testing.assert_allclose(statistics(most, "coastal"), long_beach, rtol=0.25)
     assert np.all(np.array(statistics(most, "tame")) < western_shoal)
+
+
+def test_shallow_water_is_as_the_adcp_at_western_shoal_measured_it() -> None:
+    found = np.mean([statistics(number, "shallow") for number in range(1, 7)], axis=0)
+    np.testing.assert_allclose(found, (0.044, 0.10, 7.0), rtol=0.2)
+
+
+def test_the_adcp_at_western_shoal_measured_what_shallow_water_was_made_after(shared: Path) -> None:
+    rows = (shared / "data/adcp_western_shoal_2022.txt").read_text().splitlines()[3:]
+    bins = [[float(cell) for cell in row.split(",")[7:]] for row in rows]
+    speed, to = np.array(bins[1::3]), np.array(bins[2::3])
+    upper, middle = (speed * np.exp(1j * np.deg2rad(to)))[:, [7, 4]].T
+    known = np.isfinite(upper)
+    upper, middle = upper[known], middle[known]
+    factor = np.vdot(upper, middle) / np.vdot(upper, upper)
+    ratio = (middle / upper)[np.abs(upper) > 0.2]
+    found = (
+        np.sqrt(np.mean(np.abs(middle - factor * upper) ** 2)),
+        np.abs(ratio).std(),
+        np.angle(ratio, deg=True).std(),
+    )
+    np.testing.assert_allclose(found, (0.044, 0.10, 7.0), rtol=0.25)
+
+
+def test_a_later_water_changes_the_identity_of_no_other_truth() -> None:
+    assert TruthParameters.of_family(7).sha256.startswith("5204e97d21bf")
+    assert TruthParameters.of_family(7, water="shallow").profile.shear_sd_m_s > 0.05
 
 
 def test_a_settled_field_has_the_mean_of_the_shear_over_the_nets_depth(

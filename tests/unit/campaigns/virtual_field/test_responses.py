@@ -25,7 +25,6 @@ def formula(speed: np.ndarray, direction: np.ndarray, growth: np.ndarray) -> np.
 def tabulated() -> Responses:
     growth, speed, direction = np.meshgrid(GROWTH, SPEED, DIRECTION, indexing="ij")
     return Responses(
-        sensor_names=("depth-1",),
         speed=SPEED,
         direction=DIRECTION,
         growth=GROWTH,

@@ -1,10 +1,17 @@
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
 from seacage.cage import Cage
-from seacage.campaigns import TruthParameters, true_shapes
+from seacage.campaigns import (
+    TruthParameters,
+    generated_current,
+    true_nets,
+    true_shapes,
+    virtual_field,
+)
 from seacage.conventions import InputError
 from stand_in import StandIn
 
@@ -76,3 +83,14 @@ def test_the_growth_of_the_net_matters():
 def test_no_query_has_no_answer(seeds, cases):
     with pytest.raises(InputError, match="Ask for 1"):
         shapes(seeds=seeds, cases=cases)
+
+
+def test_the_true_net_is_where_the_errorless_depth_sensors_are(tmp_path):
+    buoy = generated_current(3, start=datetime(2020, 1, 18, tzinfo=UTC), days=2.0)
+    how = {"hidden": TruthParameters.of_family(3), "seed": 3, "kept": tmp_path, "workers": 1}
+    truth = virtual_field(SMALL, buoy, method="settle", **how).truth
+    depth = np.column_stack([truth.sensors[f"depth-{k}"].values["depth_m"] for k in (1, 2, 3)])
+    rows = np.arange(0, len(depth), 97)
+    net = true_nets(SMALL, buoy, truth.sensors["depth-1"].time[rows], **how)
+    nodes = [one.node for one in SMALL.depth_sensors]
+    np.testing.assert_allclose(-net[:, nodes, 2], depth[rows], atol=1e-9)

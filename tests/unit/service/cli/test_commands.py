@@ -42,6 +42,7 @@ COMMANDS = [
     "if-parted",
     "score",
     "study paper",
+    "study bench",
     "study benchmarks",
     "study fidelity",
     "serve",

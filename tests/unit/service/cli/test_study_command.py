@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from seacage import studies
 from seacage.conventions import InputError
 from seacage.service._cli._app import app
-from seacage.service._cli._study import _seeds
+from seacage.service._cli._study import _numbers
 from seacage.studies import BenchmarkStudy
 from seacage.studies._text import Claim
 
@@ -56,8 +56,8 @@ def test_verdicts_are_put_in_words(study_options, tmp_path):
 
 
 def test_seeds_are_a_range_or_one():
-    assert list(_seeds("0-9")) == list(range(10))
-    assert list(_seeds("7")) == [7]
+    assert list(_numbers("seeds", "0-9")) == list(range(10))
+    assert list(_numbers("seeds", "7")) == [7]
     for written in ("a", "3-", "3-x", "-1", ""):
-        with pytest.raises(InputError, match="range of seeds"):
-            _seeds(written)
+        with pytest.raises(InputError, match="is not a range"):
+            _numbers("seeds", written)

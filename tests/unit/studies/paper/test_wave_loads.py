@@ -28,7 +28,7 @@ from seacage.studies._paper._wave_loads import (
     STATISTICS,
     WaveLoads,
     WaveLoadScore,
-    _predict,
+    predict_statistic,
     score_wave_loads,
     wave_loads,
 )
@@ -84,7 +84,7 @@ def test_level_2_halves_the_error_of_a_line_that_scatters_by_a_factor_more():
 def test_the_largest_value_is_of_ten_minutes_and_not_of_three_hours():
     loads = wavy_twin().predict(SEA).line
     assert loads is not None
-    found, _, _ = _predict(loads, "maximum", 3)
+    found, _, _ = predict_statistic(loads, "maximum", 3)
     three_hours = loads.maximum_3h.lines(np.array([3]))
     expected = three_hours.pooled(600.0 / 10800.0).mean[0]
     # The one by halving a bracket, the other in closed form.
