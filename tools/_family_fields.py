@@ -52,17 +52,20 @@ def field_of(
     name: str,
     profile: Literal["buoy", "cage"] | None = None,
     hidden: TruthParameters | None = None,
+    again: int = 0,
 ) -> VirtualField:
     """A settled field of 50 days, kept in the output folder under a name.
 
     ``profile``: where an ADCP is; None for none. ``hidden``: None for those of the number.
+    ``again``: 1 and more for other weather and noise of the same cage.
     """
+    seed = number + 1000 * again
     own = hidden or TruthParameters.of_family(number, water=water, unseal=given.unseal)
     return virtual_field(
         cage,
-        generated_current(number, start=START, days=DAYS),
+        generated_current(seed, start=START, days=DAYS),
         hidden=own,
-        seed=number,
+        seed=seed,
         method="settle",
         profile=profile,
         kept=given.out / name,

@@ -1,6 +1,6 @@
 """How near level 2 of each sensor is to the truth on cages of the family, beside five baselines.
 
-    python tools/score_sensors.py CAMPAIGN OUT --truths 15-24 [--water coastal] [--workers 2]
+    python tools/score_sensors.py CAMPAIGN OUT --truths 15-24 [--water coastal] [--seeds 2]
 
 CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
 virtual field of 50 days; the twin trains on the first 25 (shackles on half a day), and is scored on
@@ -56,6 +56,7 @@ def main() -> None:
     options = options_for(__doc__, truths="15-24")
     options.add_argument("--water", choices=("tame", "coastal"), action="append")
     options.add_argument("--profiles", type=Path, metavar="CAMPAIGN")
+    options.add_argument("--seeds", type=int, default=1, help="fields of each cage and water")
     given = options.parse_args()
     campaign = read_campaign(given.campaign)
     cage = Cage.from_toml(campaign.cage_toml)
@@ -67,14 +68,17 @@ def main() -> None:
             _score_profiles(cage, bases, water, given)
         return
     for water in given.water or ("tame", "coastal"):
-        fields: list[list[Score]] = []
+        fields: list[list[Score]] = []  # of each cage
         for number in given.truths:
-            kept = given.out / f"{water}-{number}.json"
-            if not kept.is_file():
-                field = field_of(cage, number, water, given, name=f"{water}-{number}")
-                scores = list(_scores(cage, base, field))
-                kept.write_text(json.dumps(scores), encoding="utf-8")
-            fields.append(json.loads(kept.read_text("utf-8")))
+            fields.append([])
+            for again in range(given.seeds):
+                kept = given.out / f"{water}-{number}{f'-{again}' if again else ''}.json"
+                if not kept.is_file():
+                    where = f"cage-{number}"  # whose equilibria all its fields share
+                    field = field_of(cage, number, water, given, name=where, again=again)
+                    scores = list(_scores(cage, base, field))
+                    kept.write_text(json.dumps(scores), encoding="utf-8")
+                fields[-1] += json.loads(kept.read_text("utf-8"))
         for group in GROUPS:
             _sum_up(water, group, fields)
 
