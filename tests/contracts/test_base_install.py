@@ -13,7 +13,7 @@ from seacage.testing import stand_in_twin
 EXTRA = {
     "xarray", "pandas", "zarr", "h5netcdf", "h5py", "dask", "distributed", "threadpoolctl",
     "matplotlib", "jinja2", "jax", "optax", "psycopg", "pyarrow", "rosbags",
-    "asyncua",
+    "asyncua", "mhkit", "sklearn", "scikit-learn",
 }  # fmt: skip
 BARE = f"""
 import sys
