@@ -10,11 +10,10 @@ from typing import Literal
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import TruthParameters, VirtualField, generated_current, virtual_field
+from seacage.campaigns import TruthParameters, VirtualField, Water, generated_current, virtual_field
 from seacage.records import FieldRecord, Record
 from seacage.studies._bench._cases import values_at
 from seacage.studies._bench._scores import share_by_third
-from seacage.studies._bench._study import Water
 
 __all__ = ["Water", "field_of", "options_for", "scored_times", "share_by_third", "values_at"]
 

@@ -23,6 +23,7 @@ TRAINING, OF_SITE, OF_PLAN = 16, 10, 6
 WINDOW, HALF_HOUR, SPIN_UP = 600.0, 1800.0, 300.0
 LANE = np.arange(0.0, 3 * 3600.0, 720.0)
 """Seconds in which the buoy says the same, before and while a sea is simulated."""
+NAMES = ("current_speed", "current_to", "hs", "tp", "wave_from")
 Part = Literal["train", "score"]
 PARTS: tuple[Part, ...] = get_args(Part)
 
@@ -41,8 +42,7 @@ class SeaLoads:
     @property
     def seas(self) -> list[SeaState]:
         """Sea of each row."""
-        names = ("current_speed", "current_to", "hs", "tp", "wave_from")
-        return [SeaState(**dict(zip(names, row, strict=True))) for row in self.water.tolist()]
+        return [SeaState(**dict(zip(NAMES, row, strict=True))) for row in self.water.tolist()]
 
 
 def loads_of_truth(
@@ -82,16 +82,13 @@ def _simulated(cage: Cage, hidden: TruthParameters, number: int, part: Part) -> 
         duration=WINDOW if trains else HALF_HOUR,
         spin_up=SPIN_UP,
         seed=seed,
-        law=hidden.law,
-        skin_friction=hidden.skin_friction,
-        lift_factor=hidden.lift_factor,
+        **hidden.net_loads,
         sample_every=None,
     )
     kept = has_answer(history.result)
     lines, tension = history.lines, history.lines.tension
-    names = ("current_speed", "current_to", "hs", "tp", "wave_from")
     return SeaLoads(
-        water=np.array([[getattr(sea, name) for name in names] for sea in seas])[kept],
+        water=np.array([[getattr(sea, name) for name in NAMES] for sea in seas])[kept],
         mean=tension.mean[kept],
         std=tension.std[kept],
         largest=tension.maximum[kept],

@@ -6,6 +6,7 @@ from seacage.campaigns._run import run_campaign, run_share
 from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._virtual_field._events import Event, read_events
+from seacage.campaigns._virtual_field._family import WATERS, Water
 from seacage.campaigns._virtual_field._field import VirtualField, virtual_field, virtual_field_share
 from seacage.campaigns._virtual_field._timetable import Timetable
 from seacage.campaigns._virtual_field._true_nets import true_nets
@@ -13,6 +14,7 @@ from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shape
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 
 __all__ = [
+    "WATERS",
     "CampaignStatus",
     "Event",
     "Plan",
@@ -21,6 +23,7 @@ __all__ = [
     "TrueShapes",
     "TruthParameters",
     "VirtualField",
+    "Water",
     "campaign_status",
     "generated_current",
     "generated_waves",

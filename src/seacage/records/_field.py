@@ -8,13 +8,13 @@ from typing import Any, Self, cast
 
 from seacage.conventions import InputError, Origin, RecordError, parse_json, read_text
 from seacage.records._brief import brief
+from seacage.records._keys import CURRENT
 from seacage.records._readers._netcdf import read_netcdf, write_record
 from seacage.records._record import Record
 from seacage.records._sample import check_stream
 
 _SCHEMA = "seacage field record 1"
 _FILE = "field.json"
-_CURRENT = ("current_speed_m_s", "current_to_deg")
 _SENSOR = (("tension_kn",), ("depth_m",))
 
 
@@ -39,9 +39,9 @@ class FieldRecord:
     __repr__ = brief
 
     def __post_init__(self) -> None:
-        if not self.buoy.values.keys() >= set(_CURRENT):
+        if not self.buoy.values.keys() >= set(CURRENT):
             raise InputError(
-                f"{self.buoy.stream}: a field record's buoy carries {' and '.join(_CURRENT)}, "
+                f"{self.buoy.stream}: a field record's buoy carries {' and '.join(CURRENT)}, "
                 f"this one {', '.join(self.buoy.values)}. Map the current's columns too."
             )
         for name, sensor in self.sensors.items():

@@ -9,6 +9,8 @@ from seacage.conventions import InputError
 
 T = TypeVar("T")
 
+CURRENT = ("current_speed_m_s", "current_to_deg")  # keys of a current at no stated depth
+
 
 @dataclass(frozen=True, slots=True)
 class Key:
@@ -64,8 +66,7 @@ def bin_keys(depth: float) -> tuple[str, str]:
 
 def keys_at(depth: float, values: Mapping[str, T]) -> dict[str, T]:
     """The current among some values, by its keys at a depth [m]; others are left out."""
-    plain = ("current_speed_m_s", "current_to_deg")
-    keys = zip(plain, bin_keys(round(depth, 1)), strict=True)
+    keys = zip(CURRENT, bin_keys(round(depth, 1)), strict=True)
     return {key: values[one] for one, key in keys if one in values}
 
 

@@ -9,7 +9,9 @@ import numpy as np
 from seacage.conventions import InputError, read_packaged_table
 
 Water = Literal["tame", "coastal", "shallow"]
+"""Water of a truth: as on the shelf, or as an ADCP measured it."""
 WATERS: tuple[Water, ...] = get_args(Water)
+"""Waters of the family of truths."""
 
 
 def draw_truth(

@@ -45,9 +45,7 @@ class TrueCage:
         return cls(
             toml=true.to_toml(),
             refined=times,
-            law=hidden.law,
-            skin_friction=hidden.skin_friction,
-            lift_factor=hidden.lift_factor,
+            **hidden.net_loads,
             stiffening=(hidden.lines.stiffer_from_strain, hidden.lines.stiffer_share),
             watched=tuple(int(drawn[sensor.node]) for sensor in cage.depth_sensors),
             drawn=tuple(drawn.tolist()),

@@ -289,12 +289,13 @@ class TruthParameters:
     @property
     def equilibria(self) -> Simulator:
         """What gives the true cage's equilibria."""
-        return Simulator(
-            method="settle",
-            law=self.law,
-            skin_friction=self.skin_friction,
-            lift_factor=self.lift_factor,
-        )
+        return Simulator(method="settle", **self.net_loads)
+
+    @property
+    def net_loads(self) -> dict[str, Any]:
+        """Law of the netting with its numbers, as simulations take them."""
+        names = ("law", "skin_friction", "lift_factor")
+        return {name: getattr(self, name) for name in names}
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""

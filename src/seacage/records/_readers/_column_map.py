@@ -17,6 +17,7 @@ from jaxtyping import Float
 
 from seacage.conventions import Origin, RecordError, read_text
 from seacage.records._keys import (
+    CURRENT,
     NO_MEAN_PERIOD,
     bin_keys,
     depth_of,
@@ -43,7 +44,6 @@ _PERIOD = {"s": 1.0}
 _FORCE = {"kN": 1.0, "N": 0.001, "MN": 1000.0, "kgf": 0.00980665, "tf": 9.80665}
 _ANGLE = {"deg": 1.0, "rad": 180.0 / np.pi}
 _COMPONENTS = ("current_east_m_s", "current_north_m_s")
-_CURRENT = ("current_speed_m_s", "current_to_deg")
 ENCODINGS = ("utf-8", "utf-16", "latin-1", "cp1252")  # of text, as a column map may declare them
 
 _QUANTITIES: Mapping[str, _Quantity] = {
@@ -327,7 +327,7 @@ class ColumnMap:
         """Columns of the current by their depth [m]; none where one depth alone is read."""
         found: dict[float, tuple[Column, ...]] = {}
         for one in self.columns if self.profile else ():
-            if one.depth_m is not None and one.key in (*_CURRENT, *_COMPONENTS):
+            if one.depth_m is not None and one.key in (*CURRENT, *_COMPONENTS):
                 found[one.depth_m] = (*found.get(one.depth_m, ()), one)
         return found
 
@@ -476,7 +476,7 @@ def check_components(columns: Iterable[Column], *, where: str) -> None:
     norths = {column.key: str(column.declination_deg) for column in columns}
     components = norths.keys() & set(_COMPONENTS)
     one_north = len({norths[key] for key in components}) < 2
-    if components and (len(components) == 1 or norths.keys() & set(_CURRENT) or not one_north):
+    if components and (len(components) == 1 or norths.keys() & set(CURRENT) or not one_north):
         raise RecordError(
             f"{where}: a current is current_east with current_north, both of one north, or "
             f"current_speed with current_direction; here {', '.join(sorted(norths))}. Ignore the "
@@ -490,7 +490,7 @@ def check_bins(bins: Mapping[float, Iterable[Column]], *, where: str) -> None:
     Raises RecordError: as said.
     """
     for depth, columns in bins.items():
-        if len({one.key for one in columns}) != len(_CURRENT):
+        if len({one.key for one in columns}) != len(CURRENT):
             raise RecordError(
                 f"{where}: the current at {depth:g} m is not speed with direction, nor east with "
                 "north. Declare both columns of each depth, or ignore the one."

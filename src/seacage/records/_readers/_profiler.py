@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.conventions import Origin, RecordError, compass
-from seacage.records._keys import bin_keys
+from seacage.records._keys import CURRENT, keys_at
 from seacage.records._readers._column_map import parse_origin
 from seacage.records._readers._csv import in_order
 from seacage.records._readers._ensembles import Ensembles, read_ensembles
@@ -115,9 +115,11 @@ def read_profiler(path: Path, choice: ProfilerMap, *, stream: str) -> Record:
     to = (compass(velocity) + choice.declination_deg) % 360.0
     values: dict[str, np.ndarray] = {}
     for column, depth in enumerate(depths):
+        current: dict[str, np.ndarray] = dict(
+            zip(CURRENT, (speed[:, column], to[:, column]), strict=True)
+        )
         buoys = column == len(depths) - 1 and choice.depth_m is not None
-        keys = ("current_speed_m_s", "current_to_deg") if buoys else bin_keys(depth)
-        values |= dict(zip(keys, (speed[:, column], to[:, column]), strict=True))
+        values |= current if buoys else keys_at(depth, current)
     ahead = np.timedelta64(choice.utc_offset, "us")
     record = in_order(time - ahead, values, stream=stream, origin=choice.origin)
     note = (

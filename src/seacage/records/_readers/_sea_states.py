@@ -10,6 +10,7 @@ from jaxtyping import Float
 from seacage.conventions import InputError, RecordError
 from seacage.ocean import SeaState
 from seacage.records._campaign_store import sea_names
+from seacage.records._keys import CURRENT
 from seacage.records._readers._csv import number_in
 from seacage.records._readers._table import PLAIN, Table, read_table
 
@@ -32,7 +33,6 @@ def sea_columns(seas: Iterable[SeaState]) -> dict[str, str]:
 
 
 _WAVES = ("hs", "tp", "wave_from")
-_REQUIRED = ("current_speed_m_s", "current_to_deg")
 
 
 def read_sea_states(path: Path) -> tuple[SeaState, ...]:
@@ -54,10 +54,10 @@ def sea_states(table: Table, *, assumed: bool = True) -> tuple[SeaState, ...]:
 
     Raises RecordError: a column or a number is missing, or a sea state that cannot be.
     """
-    if not set(_REQUIRED) <= set(table.header):
+    if not set(CURRENT) <= set(table.header):
         raise _other_columns(table)
     columns = {
-        name: numbers(table, key, blank=key not in _REQUIRED)
+        name: numbers(table, key, blank=key not in CURRENT)
         for key, name in SEA_COLUMNS.items()
         if key in table.header
     }
@@ -98,6 +98,6 @@ def numbers(table: Table, column: str, *, blank: bool = False) -> Float[np.ndarr
 def _other_columns(table: Table) -> RecordError:
     return RecordError(
         f"{table.path}: its columns are {', '.join(table.header)}. A sea state has "
-        f"{', '.join(SEA_COLUMNS)}, at least {' and '.join(_REQUIRED)}: currents go to, waves come "
+        f"{', '.join(SEA_COLUMNS)}, at least {' and '.join(CURRENT)}: currents go to, waves come "
         "from a direction, clockwise from north."
     )

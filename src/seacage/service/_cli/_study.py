@@ -257,6 +257,7 @@ def bench(
         seed: Of weather, noise, faults and waves.
         unseal: Take sealed truths, for a judgement that is the last.
     """
+    from seacage.campaigns import WATERS
     from seacage.studies import bench_study
 
     with progress_bar() as progress:
@@ -264,7 +265,7 @@ def bench(
             out,
             quick=quick,
             truths=_numbers("truths", truths),
-            waters=("tame", "coastal", "shallow") if water is None else (water,),
+            waters=WATERS if water is None else (water,),
             current=current,
             rows=row or (),
             surrogates=surrogate or (),

@@ -10,17 +10,10 @@ from seacage.campaigns import Plan, TruthParameters
 from seacage.conventions import Origin, has_answer
 from seacage.dynamics import simulate
 from seacage.ocean import SeaState
-from seacage.records import FieldRecord, Record, instant
+from seacage.records import SEA_COLUMNS, FieldRecord, Record, instant, sea_columns
 
 HALF_HOUR, EVERY, WINDOW = 1800.0, 0.5, 600.0  # s
 GROWTH = 0.5  # of the net
-KEYS = {
-    "current_speed_m_s": "current_speed",
-    "current_to_deg": "current_to",
-    "hs_m": "hs",
-    "tp_s": "tp",
-    "wave_from_deg": "wave_from",
-}
 
 
 def sea_field(
@@ -38,21 +31,20 @@ def sea_field(
     """
     seed = int(chance.integers(2**31))
     seas = Plan.named("loads", seed, count).seas
-    by = hidden.equilibria
     history = simulate(
         hidden.true_cage(cage, GROWTH),
         seas,
         duration=HALF_HOUR,
         seed=seed,
-        law=hidden.law,
-        skin_friction=by.skin_friction,
-        lift_factor=by.lift_factor,
+        **hidden.net_loads,
         sample_every=EVERY,
         series_nodes=[],
     )
     bridles = [one.bridle for one in cage.shackles]
     load = history.bridle_tension[:, : round(HALF_HOUR / EVERY), bridles] / 1e3
-    table = {key: np.array([getattr(sea, of) for sea in seas]) for key, of in KEYS.items()}
+    table = {
+        key: np.array([getattr(sea, of) for sea in seas]) for key, of in sea_columns(seas).items()
+    }
     answered = has_answer(history.result)
     first = np.arange(count) < count // 2
     train, held = (np.flatnonzero(answered & part) for part in (first, ~first))
@@ -93,6 +85,6 @@ def _field(
 
 def seas_of(queries: dict[str, np.ndarray]) -> list[SeaState]:
     """The seas whose largest loads are to be predicted."""
-    columns = [queries[f"sea_{key}"].tolist() for key in KEYS]
-    rows = zip(*columns, strict=True)
-    return [SeaState(**dict(zip(KEYS.values(), row, strict=True))) for row in rows]
+    names = {key: name for key, name in SEA_COLUMNS.items() if f"sea_{key}" in queries}
+    rows = zip(*(queries[f"sea_{key}"].tolist() for key in names), strict=True)
+    return [SeaState(**dict(zip(names.values(), row, strict=True))) for row in rows]

@@ -6,12 +6,11 @@ from functools import cache
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
 from seacage.cage import Cage
-from seacage.campaigns import Plan, TruthParameters
+from seacage.campaigns import WATERS, Plan, TruthParameters, Water
 from seacage.conventions import InputError, Origin, Progress, load_extension, no_progress
 from seacage.records import Record, read_record
 from seacage.studies._bench._cases import Given, Size, check_days, make_case
@@ -24,8 +23,6 @@ from seacage.studies._page import write_report
 from seacage.studies._stages import SIMULATION, Stages, code_sha256, count
 from seacage.twin import Training, train
 
-Water = Literal["tame", "coastal", "shallow"]
-WATERS: tuple[Water, ...] = ("tame", "coastal", "shallow")
 LEDGER = "predictions.json"
 
 
