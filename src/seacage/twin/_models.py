@@ -28,6 +28,7 @@ from seacage.twin._correction import (
     NetCorrection,
     WindowErrors,
     discrepancy_std,
+    follow_level_1,
     relative_discrepancy,
     relative_in_waves,
     variance_by_change,
@@ -353,8 +354,7 @@ class Models:
             means = self._sensors_and_bridles(within(some))
             if self.together is not None:
                 low = Prediction(mean=means[:, columns], std=np.zeros((len(means), len(columns))))
-                x = within(some).features(self.inputs)
-                means[:, columns] = self.together.latent(x, low, np.zeros_like(low.mean)).mean
+                means[:, columns] = self.level_2(within(some), low, low.std).mean
             return means
 
         both = variance_by_change(water, best)
@@ -403,7 +403,7 @@ class Models:
             steepness = np.zeros_like(low.mean)
             if self.together.water_sd.any():
                 steepness = self.steepness(water)[:, columns]
-            latent = self.together.latent(x, low, steepness)
+            latent = self.level_2(water, low, steepness)
             sensor.mean[:, columns] = latent.mean
             sensor.std[:, columns] = self._widen_outside(x, latent)
             lines, here = list(self._lines.values()), list(self._lines)
@@ -413,6 +413,33 @@ class Models:
                 shape = self.net.predict(water, sensor.mean[:, self._net_columns])
             sensor.std[:, columns] = np.sqrt(sensor.std[:, columns] ** 2 + self.together.noise)
         return [bridle_low, shape, sensor_low, bridle, sensor]
+
+    def level_2(
+        self, water: Metocean, low: Prediction, steepness: Float[np.ndarray, "case corrected"]
+    ) -> Prediction:
+        """Predict the corrected sensors' readings without the instruments' noise.
+
+        Beyond the edge of a sensor's training window as that edge says.
+
+        ``low``, ``steepness``: of level 1 of these sensors, there is one at least.
+        """
+        together, columns = self.together, list(self.corrections)
+        assert together is not None, "level 2 of no sensor"
+        own = together.latent(water.features(self.inputs), low, steepness)
+        speed = np.linalg.norm(water.current_velocity, axis=1)
+        for edge in np.unique(together.edge_speed[together.edge_weight > 0.0]):
+            rows = np.flatnonzero(speed > edge)
+            if not len(rows):
+                continue
+            at_edge = water.rows(rows).limited(current_speed=edge, hs=math.inf)
+            low_edge = Prediction(
+                mean=self._sensors_and_bridles(at_edge)[:, columns], std=low.std[rows]
+            )
+            here = together.latent(at_edge.features(self.inputs), low_edge, steepness[rows])
+            weight = together.edge_weight * (together.edge_speed == edge)
+            found = follow_level_1(own.rows(rows), here, low.mean[rows] - low_edge.mean, weight)
+            own.mean[rows], own.std[rows] = found.mean, found.std
+        return own
 
     def _widen_outside(
         self, x: Features, latent: Prediction

@@ -16,6 +16,7 @@ from seacage.twin._correction._sensor import (
     FixedPrediction,
     Spread,
 )
+from seacage.twin._correction._window_edge import WindowEdge, follow_level_1
 
 __all__ = [
     "DAY",
@@ -27,8 +28,10 @@ __all__ = [
     "FixedPrediction",
     "NetCorrection",
     "Spread",
+    "WindowEdge",
     "WindowErrors",
     "discrepancy_std",
+    "follow_level_1",
     "relative_discrepancy",
     "relative_in_waves",
     "variance_by_change",

@@ -1,8 +1,8 @@
 """Level 2 of one sensor: a line through level 1, and a NARGP of what the line leaves."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Self
 
@@ -24,6 +24,8 @@ from seacage.surrogates import (
     log_density,
     pseudo_bma,
 )
+from seacage.twin._correction._window_edge import WindowEdge
+from seacage.twin._metocean import Metocean
 from seacage.twin._pairs import Pairs
 
 CaseSensor = Float[np.ndarray, "case *sensor"]
@@ -43,6 +45,9 @@ REST_MODELS: tuple[ModelName, ...] = ("nargp", "ar1", "regression")
 DAY, TWO_HOURS = 86400.0, (7200.0, 1800.0)
 LEAST_DAYS, LEAST_BLOCKS = 4, 2
 HALF_TIDE = 22357.0  # [s] whose readings are worth a single independent one
+# Of a window's speeds, beyond which readings are held out to see how far level 2 carries; and how
+# many there have to be
+SLOWER_SHARE, LEAST_FASTER = 0.75, 10
 
 Features = Float[np.ndarray, "case feature"]
 
@@ -93,6 +98,8 @@ class Correction:
     weight: float = 1.0  # of this against level 1 as it is [-]
     rest: FittedNARGP  # of the reading less gain times level 1 [N] or [m]; its own level 1 is lent
     spread: Spread = Spread()  # calibration of the standard deviation
+    # Of the training window, and how it goes on beyond it
+    edge: WindowEdge = field(default_factory=WindowEdge)
 
     @classmethod
     def fit(cls, pairs: Pairs, x: Features, lower: Predicts, *, restarts: int, seed: int) -> Self:
@@ -133,7 +140,29 @@ class Correction:
     def updated(self, pairs: Pairs, x: Features) -> Self:
         """Condition on more readings; gain, hyperparameters, spread and level 1 stay."""
         below = self.rest.lower.predict(x).mean
-        return replace(self, rest=self.rest.updated(x, pairs.value - self.gain * below))
+        rest = self.rest.updated(x, pairs.value - self.gain * below)
+        return replace(self, rest=rest, edge=self.edge.reaching(pairs.metocean))
+
+    def with_edge(self, pairs: Pairs, features: Callable[[Metocean], Features]) -> Self:
+        """Weigh both ways beyond the window on the fastest quarter of its readings, held out.
+
+        Hyperparameters, gain and weight stay those of the whole window.
+
+        ``pairs``: the training readings, in this model's order. ``features``: of their water.
+        """
+        speed = np.linalg.norm(pairs.metocean.current_velocity, axis=1)
+        slower = float(np.quantile(speed, SLOWER_SHARE))
+        out, (whole,) = speed > slower, self.rest.upper
+        if out.sum() < LEAST_FASTER:
+            return replace(self, edge=WindowEdge(speed=float(speed.max())))
+        reduced = replace(self, rest=replace(self.rest, own=(whole.kept(~out),)))
+        fast = pairs.rows(out)
+        at_edge = fast.metocean.limited(current_speed=slower, hs=math.inf)
+        low, low_edge = (self.rest.lower.predict(features(w)) for w in (fast.metocean, at_edge))
+        own = reduced.latent(features(fast.metocean), low).mean
+        following = reduced.latent(features(at_edge), low_edge).mean + low.mean - low_edge.mean
+        errors = (float(np.mean((fast.value - one) ** 2)) for one in (own, following))
+        return replace(self, edge=WindowEdge.weighed(float(speed.max()), *errors))
 
     @cached_property
     def domain(self) -> Domain:
@@ -178,6 +207,9 @@ class Corrections:
     scale: Float[np.ndarray, " sensor"]
     water_sd: Float[np.ndarray, " sensor"]
     noise: Float[np.ndarray, " sensor"]
+    # Of each ``WindowEdge``
+    edge_speed: Float[np.ndarray, " sensor"]
+    edge_weight: Float[np.ndarray, " sensor"]
 
     @classmethod
     def of(cls, models: Sequence[Correction]) -> Self:
@@ -190,6 +222,8 @@ class Corrections:
             scale=np.array([model.spread.scale for model in models]),
             water_sd=np.array([model.spread.water_sd for model in models]),
             noise=np.array([model.spread.white for model in models]),
+            edge_speed=np.array([model.edge.speed for model in models]),
+            edge_weight=np.array([model.edge.weight for model in models]),
         )
 
     def latent(

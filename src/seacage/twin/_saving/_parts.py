@@ -11,7 +11,7 @@ from seacage import surrogates
 from seacage.cage import Cage
 from seacage.conventions import ModelError, Origin, SeacageError
 from seacage.records import check_stream
-from seacage.twin._correction import Correction, CurrentChange, Spread, WindowErrors
+from seacage.twin._correction import Correction, CurrentChange, Spread, WindowEdge, WindowErrors
 from seacage.twin._discrepancy import Discrepancy
 from seacage.twin._json_keys import json_keys
 from seacage.twin._lines._line_correction import LineCorrection
@@ -28,7 +28,8 @@ from seacage.twin._travel_time import TravelTime
 FORMAT = "seacage twin"
 VERSION = 2
 # With what version 0.1.0 would ignore, a fault detector of other settings, a discrepancy of the
-# net's level 2, a travel time of the current, its change, or profiles of it: it refuses these
+# net's level 2, a travel time of the current, its change, profiles of it, or edges of the training
+# windows: it refuses these
 TUNED_VERSION = 3
 
 UPPER = "upper/"  # before the sensor's name, in the names of level 2's parts
@@ -92,6 +93,7 @@ class Header:
     parted: tuple[PartedHeader, ...] = ()
     # Of level 2 against level 1, where that is not all
     weights: Mapping[str, float] = field(default_factory=dict[str, float])
+    edges: Mapping[str, WindowEdge] = field(default_factory=dict[str, WindowEdge])
     line_waves: tuple[tuple[float, ...], ...] = ()
     line_waves_of: str = ""
     travel_time: TravelTime = field(default_factory=TravelTime)
@@ -107,7 +109,8 @@ def to_parts(
     from pydantic import TypeAdapter
 
     usual = FaultDetectorSettings(), TravelTime(), CurrentChange()
-    tuned = tuple(others[name] for name in _OF_TWIN[-3:]) != usual or models.profiles
+    edges = {name: model.edge for name, model in models.upper.items() if model.edge.weight}
+    tuned = tuple(others[name] for name in _OF_TWIN[-3:]) != usual or models.profiles or edges
     header = Header(
         format=FORMAT,
         version=TUNED_VERSION if tuned or (discrepancy and discrepancy.level > 1) else VERSION,
@@ -123,6 +126,7 @@ def to_parts(
         gains={name: model.gain for name, model in models.upper.items()},
         weights={name: model.weight for name, model in models.upper.items()},
         spreads={name: model.spread for name, model in models.upper.items()},
+        edges=edges,
         **{name: getattr(models, name) for name in _OF_MODELS},
         **others,
     )
@@ -278,7 +282,12 @@ def _models(
     )
     for sensor, gain in header.gains.items():
         rest = part(f"{UPPER}{sensor}", surrogates.FittedNARGP, lower=models.lower(sensor))
-        weight = header.weights.get(sensor, 1.0)
-        model = Correction(gain=gain, weight=weight, rest=rest, spread=header.spreads[sensor])
+        model = Correction(
+            gain=gain,
+            weight=header.weights.get(sensor, 1.0),
+            rest=rest,
+            spread=header.spreads[sensor],
+            edge=header.edges.get(sensor, WindowEdge()),
+        )
         models = models.with_level_2(sensor, model)
     return models

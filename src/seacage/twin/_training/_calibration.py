@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from seacage.surrogates import conformal_factor, variance_components
+from seacage.surrogates import Prediction, conformal_factor, variance_components
 from seacage.twin._correction import DAY, LEAST_SHARE, Correction, Spread
 from seacage.twin._pairs import Pairs
 from seacage.twin._training._data import CageTraining
@@ -110,11 +110,14 @@ def _reference_errors(training: CageTraining, sensor: str, short: Pairs) -> Held
         model = training.fit(sensor, training.training.select(within))
         model = _with_white_noise(model, training, within)
         held_out = thin(outside(pairs, short))
-        x = training.features(held_out)
-        latent = model.latent(x, model.rest.lower.predict(x))
+        low = model.rest.lower.predict(training.features(held_out))
+        column = Prediction(mean=low.mean[:, None], std=low.std[:, None])
+        latent = training.models.with_level_2(sensor, model).level_2(
+            held_out.metocean, column, np.zeros_like(column.mean)
+        )
         training.held_out[key] = HeldOut(
-            error=held_out.value - latent.mean,
-            variance=latent.std**2,
+            error=held_out.value - latent.mean[:, 0],
+            variance=latent.std[:, 0] ** 2,
             steepness=np.zeros(len(held_out)),
             white=model.spread.white,
         )

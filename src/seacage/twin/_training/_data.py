@@ -91,4 +91,5 @@ class CageTraining:
         """Fit level 2 of a sensor to some of its readings, without calibration."""
         x, lower = self.features(selected), self.models.lower(sensor)
         options = {"restarts": self.training.restarts, "seed": self.training.seed}
-        return Correction.fit(selected, x, lower, **options)
+        model = Correction.fit(selected, x, lower, **options)
+        return model.with_edge(selected, lambda water: water.features(self.models.inputs))

@@ -10,6 +10,7 @@ import pytest
 from seacage.conventions import InputError, ModelError
 from seacage.testing import stand_in_seas, stand_in_twin
 from seacage.twin import CurrentChange, FaultDetectorSettings, TravelTime, Twin, read_key
+from seacage.twin._correction import WindowEdge
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +55,10 @@ def test_settings_of_the_fault_detector_are_read_back(tmp_path):
 
 
 def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(tmp_path):
-    plain = replace(stand_in_twin(), current_change=CurrentChange())
+    twin = stand_in_twin()
+    upper = {name: replace(one, edge=WindowEdge()) for name, one in twin.models.upper.items()}
+    models = replace(twin.models, upper=upper)
+    plain = replace(twin, models=models, current_change=CurrentChange())
     plain.write(tmp_path / "plain")
     replace(plain, fault_detector=FaultDetectorSettings(limit=25.0)).write(tmp_path / "t")
     versions = [
@@ -62,6 +66,15 @@ def test_only_a_tuned_fault_detector_makes_a_twin_that_version_0_1_0_refuses(tmp
         for name in ("plain", "t")
     ]
     assert versions == [2, 3]
+
+
+def test_edges_of_training_windows_are_read_back(written):
+    edges = [
+        {name: one.edge for name, one in twin.models.upper.items()}
+        for twin in (stand_in_twin(), Twin.read(written))
+    ]
+    assert edges[0] == edges[1]
+    assert any(one.weight > 0.0 for one in edges[0].values())
 
 
 def test_changes_of_the_current_make_a_twin_that_version_0_1_0_refuses(written):
