@@ -5,7 +5,6 @@ import os
 import re
 import shutil
 import tarfile
-from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
 from io import BufferedIOBase
@@ -22,15 +21,9 @@ from seacage.service._store._database._sqlite import is_served
 _PLACE = re.compile(r"""(\b(?:twin|archive|url|data)\s*=\s*)("[^"\\]*"|'[^']*')""")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Restored:
-    """A restored data folder."""
-
-    manifest: Manifest
-    aside: Path | None  # where the folder lies that was there before
-
-
-def restore(file: Path, data: Path, *, replace: bool, other_physics: bool) -> Restored:
+def restore(
+    file: Path, data: Path, *, replace: bool, other_physics: bool
+) -> tuple[Manifest, Path | None]:
     """Verify a backup and make it the data folder, whole or not at all.
 
     ``replace``: a folder that is there is moved aside first.
@@ -38,6 +31,7 @@ def restore(file: Path, data: Path, *, replace: bool, other_physics: bool) -> Re
 
     Raises InputError: the file is no whole backup or was changed; the folder is in use or not
     empty; or the simulator of its twins is another.
+    Returns what was in the backup, and where the folder lies that was there before.
     """
     there = data.exists() and any(data.iterdir())
     if there and any(is_served(one) for one in data.glob("*.sqlite")):
@@ -61,7 +55,7 @@ def restore(file: Path, data: Path, *, replace: bool, other_physics: bool) -> Re
         fresh.replace(data)
     finally:
         shutil.rmtree(fresh, ignore_errors=True)
-    return Restored(manifest=manifest, aside=aside)
+    return manifest, aside
 
 
 def _extract_all(file: Path, to: Path, *, other_physics: bool) -> Manifest:

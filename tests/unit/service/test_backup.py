@@ -68,10 +68,10 @@ def test_a_backup_holds_samples_notes_and_the_twin(backup):
 
 
 def test_what_is_restored_is_what_was_there(backup, settings, tmp_path):
-    restored = restore(backup, tmp_path / "new", **BOUNDS)
+    _, aside = restore(backup, tmp_path / "new", **BOUNDS)
     assert samples_of(tmp_path / "new") == samples_of(settings.data)
     assert (tmp_path / "new" / "tails" / "ace-1.json").read_text() == "{}"
-    assert restored.aside is None
+    assert aside is None
     assert (tmp_path / "new").stat().st_mode & 0o077 == 0
     with running(tmp_path / "new") as service:
         assert service.post(buoy(1.0)).json() == {"accepted": 1, "duplicates": 0, "rejected": []}
@@ -178,8 +178,8 @@ def test_a_folder_that_is_not_empty_is_moved_aside_only_on_request(tmp_path, bac
     with pytest.raises(InputError, match=r"is not empty\. .*--replace"):
         restore(backup, there, **BOUNDS)
     assert [one.name for one in there.iterdir()] == ["note"]
-    restored = restore(backup, there, replace=True, other_physics=False)
-    assert (restored.aside / "note").read_text() == "mine"
+    _, aside = restore(backup, there, replace=True, other_physics=False)
+    assert (aside / "note").read_text() == "mine"
     assert (there / "samples.sqlite").exists()
 
 
@@ -223,7 +223,8 @@ def test_twins_of_another_simulator_are_restored_only_on_request(tmp_path, backu
     old = rewritten(backup, tmp_path / "old.tar", lambda one: one.update(physics=3))
     with pytest.raises(InputError, match=r"PHYSICS 3 .*--other-physics and train the twins anew"):
         restore(old, tmp_path / "new", **BOUNDS)
-    assert restore(old, tmp_path / "new", replace=False, other_physics=True)
+    manifest, _ = restore(old, tmp_path / "new", replace=False, other_physics=True)
+    assert manifest.physics == 3
 
 
 @pytest.mark.parametrize("name", ["../outside", "/tmp/outside"])

@@ -12,14 +12,7 @@ from seacage.service._cli._console import guard, progress_bar, refusal, report
 
 if TYPE_CHECKING:
     from seacage.campaigns import Event, TruthParameters
-    from seacage.records import (
-        ColumnMap,
-        FieldRecord,
-        Limits,
-        NetcdfMap,
-        ProfilerMap,
-        Record,
-    )
+    from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, ProfilerMap, Record
 
 group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
 _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}

@@ -11,13 +11,7 @@ from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_
 from seacage.service._cli._score import error_rows
 
 if TYPE_CHECKING:
-    from seacage.studies import (
-        BenchmarkStudy,
-        BenchStudy,
-        FidelityStudy,
-        PaperStudy,
-        ShapeScore,
-    )
+    from seacage.studies import BenchmarkStudy, BenchStudy, FidelityStudy, PaperStudy, ShapeScore
 
 ReportFolder = Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")]
 group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")

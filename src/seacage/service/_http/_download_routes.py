@@ -80,8 +80,7 @@ def download_history(
 
 
 @downloads.get(
-    "/{cage}/history.nc",
-    responses=body_of(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF,
+    "/{cage}/history.nc", responses=body_of(NETCDF, "CF-NetCDF, with the whole shape.") | _NO_NETCDF
 )
 def download_netcdf(
     live: Live, start: From = None, end: To = None, limit: Limit = 1000

@@ -106,27 +106,25 @@ def summary_of(name: str, state: states.State) -> schemas.CageSummary:
 
 
 def _bridles(cage: Cage, answer: Answer, measured: Mapping[int, float]) -> list[states.BridleState]:
-    tension, (lower, upper) = answer.bridle_tension.mean[0], answer.bridle_interval()
-    read = [measured.get(k, math.nan) for k in range(len(cage.bridle_names))]
+    capacity = cage.bridle_capacity / 1e3
+    read = [measured.get(k, math.nan) / 1e3 for k in range(len(capacity))]
     shackles = {one.bridle: one.name for one in cage.shackles}
     return [
         states.BridleState(
-            name=bridle,
-            level=int(answer.bridle_level[k]),
-            in_domain=bool(answer.bridle_in_domain[0, k]),
+            name=one.name,
+            level=one.level,
+            in_domain=bool(one.in_domain[0]),
             tension_kn=states.Interval(
-                mean=_number(tension[k] / 1e3),
-                lower=_number(lower[0, k] / 1e3),
-                upper=_number(upper[0, k] / 1e3),
+                mean=_number(one.mean[0]), lower=_number(one.lower[0]), upper=_number(one.upper[0])
             ),
-            interval_reason=interval_reason(known=bool(answer.bridle_calibrated[k])),
-            low_fidelity_kn=_number(answer.bridle_low[0, k] / 1e3),
-            utilisation=_number(tension[k] / cage.bridle_capacity[k], 4),
-            measured_kn=_number(read[k] / 1e3),
-            measured_utilisation=_number(read[k] / cage.bridle_capacity[k], 4),
+            interval_reason=interval_reason(known=one.calibrated),
+            low_fidelity_kn=_number(one.low[0]),
+            utilisation=_number(one.mean[0] / capacity[k], 4),
+            measured_kn=_number(read[k]),
+            measured_utilisation=_number(read[k] / capacity[k], 4),
             measured_by=shackles.get(k),
         )
-        for k, bridle in enumerate(answer.bridle_names)
+        for k, one in enumerate(bridle_outputs(answer))
     ]
 
 

@@ -93,8 +93,7 @@ class ReplayClock(AbstractClock):
 
     def __init__(self, start: datetime, *, speed: float) -> None:
         self.speed = speed
-        self._start = start
-        self._began = time.monotonic()
+        self.restart(start)
 
     def now(self) -> datetime:
         """Return the replay's time, UTC."""
@@ -106,8 +105,7 @@ class ReplayClock(AbstractClock):
 
     def restart(self, start: datetime) -> None:
         """Stand at a time again and run on from there."""
-        self._start = start
-        self._began = time.monotonic()
+        self._start, self._began = start, time.monotonic()
 
 
 def floor_time(t: datetime, step: timedelta) -> datetime:

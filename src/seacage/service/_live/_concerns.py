@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from datetime import timedelta
-from functools import cache
 
 from seacage.conventions import SentenceValue, fill_sentence, read_packaged_table
 from seacage.service._live._answers import loads_of, usable_value
@@ -11,6 +10,7 @@ from seacage.twin import ADAPTATION_BLOCK, AlarmPolicy, TwinState
 
 # Factor on a sensor's interval from which on the twin no longer fits its cage (decision 75) [-]
 WIDEST = 2.0
+_TEXTS: dict[str, dict[str, str]] = read_packaged_table("seacage.service._live", "concerns.toml")
 
 
 def concerns_of(
@@ -38,15 +38,10 @@ def concerns_of(
 
 
 def _concern(key: str, **values: SentenceValue) -> Concern:
-    written = {name: fill_sentence(text, values) for name, text in _texts()[key].items()}
+    written = {name: fill_sentence(text, values) for name, text in _TEXTS[key].items()}
     return Concern.model_validate(
         {"kind": key.partition("_")[0], "key": key, "values": values, **written}
     )
-
-
-@cache
-def _texts() -> dict[str, dict[str, str]]:
-    return read_packaged_table("seacage.service._live", "concerns.toml")
 
 
 def _is_measured(memory: TwinState, state: State, sensor: str, policy: AlarmPolicy) -> bool:

@@ -80,21 +80,20 @@ def restore(
     from seacage.service._backup import SETTINGS
     from seacage.service._restore import restore as from_backup
 
-    restored = from_backup(file, data, replace=replace, other_physics=other_physics)
-    manifest = restored.manifest
+    manifest, aside = from_backup(file, data, replace=replace, other_physics=other_physics)
     options = [f"--data {data}"]
     if SETTINGS in manifest.files:
         options.insert(0, f"--config {data / SETTINGS}")
     else:
         options += [f"--twin {data / new}" for new in manifest.twins]
     rows = [("Restored", f"{data}, {len(manifest.files)} files as of {manifest.made}")]
-    if restored.aside is not None:
-        rows.append(("Before", f"{restored.aside}; delete it when it is no longer needed"))
+    if aside is not None:
+        rows.append(("Before", f"{aside}; delete it when it is no longer needed"))
     if manifest.database is not None:
         rows.append(("Samples", _by_hand("pg_restore", manifest.database)))
     rows.append(("Serve", f"seacage serve {' '.join(options)}"))
-    aside = str(restored.aside) if restored.aside else None
-    report({"data": str(data), "files": len(manifest.files), "before": aside}, rows=rows)
+    before = str(aside) if aside else None
+    report({"data": str(data), "files": len(manifest.files), "before": before}, rows=rows)
 
 
 def _by_hand(command: str, database: str) -> str:

@@ -59,7 +59,7 @@ class Damage:
                 _log.error("damaged row", table=table, row=repr(row)[:200])
 
     def note_missing(self, where: object, count: int) -> None:
-        """Set how many rows of a day are missing; none where 0."""
+        """Set how many rows of a day are missing; none where it is not above 0."""
         if count > 0:
             self._missing[where] = count
         else:

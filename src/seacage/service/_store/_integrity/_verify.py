@@ -65,8 +65,9 @@ def _days(session: AbstractSession, *, cages: Sequence[str], after: Answer) -> A
     """Compare the rows of some days with how many there were."""
     days = _some(session, "tally", _TALLY, _DAYS_AT_ONCE, cages, [one[:4] for one in after])
     for cage, kind, stream, t, counted in days:
-        gone = _missing(session, kind, (cage, stream, t), counted)
-        session.damage.note_missing((cage, kind, stream, t), gone)
+        rows, values = _rows_of(kind, (cage, stream, t))
+        ((there,),) = session.rows(_COUNT.format(kind=kind, rows=rows), values)
+        session.damage.note_missing((cage, kind, stream, t), counted - there)
     return days
 
 
@@ -117,13 +118,6 @@ def recount(session: AbstractSession, kind: str, rows: Iterable[tuple[str, str, 
         of = (day[0], kind, *day[1:])
         session.rows(_NOW.format(kind=kind, rows=where), (*of, *values))
         session.rows(_EMPTY, of)
-
-
-def _missing(session: AbstractSession, kind: str, day: Day, counted: int) -> int:
-    """How many rows of a day are not there that were counted."""
-    rows, values = _rows_of(kind, day)
-    ((there,),) = session.rows(_COUNT.format(kind=kind, rows=rows), values)
-    return max(counted - there, 0)
 
 
 def _rows_of(kind: str, day: Day) -> tuple[str, tuple[object, ...]]:
