@@ -262,12 +262,8 @@ class Structure(TomlFile):
     def design_net(self, index: int) -> tuple[float, Float[np.ndarray, " level"]]:
         """A net as it was knitted, by its number.
 
-        Returns
-        -------
-        row
-            Length of a meridian from level to level [m].
-        chord
-            Width between two spokes at each level [m]; 0 at a disc's centre.
+        Returns the length of a meridian from level to level [m], and the width between two spokes
+        at each level [m]; 0 at a disc's centre.
         """
         net, upper = self.net[index], self.ring[self._ring_index(self.net[index].upper, "")]
         sector = 2.0 * np.sin(np.pi / self.spokes)

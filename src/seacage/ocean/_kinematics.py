@@ -199,12 +199,7 @@ def water_motion(
     ``position``: east, north, up from still water [m].
     ``time``: broadcast against the positions [s].
 
-    Returns
-    -------
-    velocity
-        [m/s].
-    acceleration
-        [m/s2].
+    Returns the velocity [m/s] and the acceleration [m/s2].
 
     Source: Airy (1845), finite depth; Wheeler (1970).
     """
@@ -275,10 +270,7 @@ def wave_velocity_variance(
     ``z``: up from still water [m].
     ``depth``: of the water [m].
 
-    Returns
-    -------
-    variance
-        Of the velocity along the waves and of the vertical velocity [m2/s2].
+    Returns the variance of the velocity along the waves and of the vertical velocity [m2/s2].
     """
     if sea.hs == 0.0:
         return np.zeros((z.size, 2))

@@ -30,10 +30,7 @@ def spectrum(
     ``sea``: its hs and tp count, its directions do not.
     ``angular_frequency``: [rad/s]; zero at and below 0.
 
-    Returns
-    -------
-    density
-        [m2 s].
+    Returns the density [m2 s].
 
     Source: Hasselmann et al. (1973); as given in DNV-RP-C205 (2010), 3.5.5.
     """

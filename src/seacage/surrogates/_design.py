@@ -19,10 +19,7 @@ def spread_design(
     ``count``: how many; all of them where there are no more.
     ``seed``: of the first one.
 
-    Returns
-    -------
-    chosen
-        Rows, ascending.
+    Returns the rows of the chosen points, ascending.
 
     Source: farthest-point design: Johnson, Moore & Ylvisaker (1990), maximin distance.
     """
@@ -49,10 +46,7 @@ def window_design(
     ``least``: so many in a row where the window holds fewer, for a slow sensor.
     ``most``: at most so many, evenly spread over the window where it holds more.
 
-    Returns
-    -------
-    chosen
-        Rows, ascending.
+    Returns the rows of the chosen points, ascending.
     """
     if not (span_s > 0.0 and 1 <= least <= most):
         raise InputError(

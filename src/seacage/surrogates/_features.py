@@ -20,10 +20,7 @@ def current_features(current_velocity: Row2) -> Float[np.ndarray, "row 3"]:
 
     ``current_velocity``: towards (east, north) [m/s].
 
-    Returns
-    -------
-    features
-        Speed, east and north component [m/s].
+    Returns speed, east and north component [m/s].
     """
     speed = np.hypot(current_velocity[:, 0], current_velocity[:, 1])
     return np.column_stack([speed, current_velocity])
@@ -40,11 +37,8 @@ def wave_features(hs: PerRow, wave_direction: Row2, *, tp: PerRow | None = None)
     ``wave_direction``: unit vector that the waves travel along, (east, north) [-].
     ``tp``: peak period [s]; of no meaning where there are no waves.
 
-    Returns
-    -------
-    features
-        Height, east and north component [m]; or speed, east and north component [m/s], and
-        height [m].
+    Returns height, east and north component [m]; or speed, east and north component [m/s], and
+    height [m].
     """
     if tp is None:
         return np.column_stack([hs, hs[:, None] * wave_direction])
@@ -66,10 +60,7 @@ def metocean_features(
     ``current_velocity``, ``hs``, ``wave_direction``, ``tp``: as there; without ``hs`` the current
     alone.
 
-    Returns
-    -------
-    features
-        3 columns of the current alone, 6 with waves, 7 with their period.
+    Returns 3 columns of the current alone, 6 with waves, 7 with their period.
     """
     current = current_features(current_velocity)
     if hs is None and wave_direction is None and tp is None:
@@ -90,11 +81,8 @@ def sea_features(
     ``hs``, ``tp``: significant wave height [m], peak period [s].
     ``wave_direction``: unit vector that the waves travel along, (east, north) [-].
 
-    Returns
-    -------
-    features
-        ``current_features``, Hs, east and north component of the direction, log(Tp / 1 s). A
-        symmetry turns both vectors.
+    Returns ``current_features``, Hs, east and north component of the direction, log(Tp / 1 s). A
+    symmetry turns both vectors.
     """
     current = current_features(current_velocity)
     return np.column_stack([current, hs, wave_direction, np.log(np.maximum(tp, 1e-3))])

@@ -94,12 +94,7 @@ def block_means(
     ``label``: block of each row; rows of a block need not be neighbours.
     ``columns``: any.
 
-    Returns
-    -------
-    label
-        Of the blocks, ascending.
-    means
-        Of each column, by block.
+    Returns the labels of the blocks, ascending, and of each column the means by block.
     """
     labels, block = np.unique(label, return_inverse=True)
     count = np.bincount(block)
@@ -129,10 +124,7 @@ def block_bootstrap(
     draws
         How many series are drawn.
 
-    Returns
-    -------
-    mean, lower, upper
-        In the unit of the difference.
+    Returns the mean and the lower and upper end, in the unit of the difference.
 
     Source: Politis & Romano (1992), circular block resampling.
     """

@@ -114,12 +114,8 @@ def true_responses(
     which are kept: another call with the same cage, hidden parameters and version reads them.
     ``progress``: called as ("virtual field", done, total) in cases.
 
-    Returns
-    -------
-    responses
-        On the grid.
-    error
-        Interpolated less settled, at currents and a growth off the grid [m or kN].
+    Returns the responses on the grid, and the error: interpolated less settled, at currents and a
+    growth off the grid [m or kN].
     """
     grid = Plan.grid(current_speed=_SPEEDS, current_to=_DIRECTIONS, name="responses")
     between = Plan.sample(0, _HELD_OUT, current_speed=(0.0, 1.2), hs=(0.0, 0.0))

@@ -38,10 +38,7 @@ def catenary(
         Friction coefficient of a flat sea bed at A's height; 0 lets the line slide on it.
         None: there is no sea bed, and the line may hang below A.
 
-    Returns
-    -------
-    force_a, force_b
-        On each end (horizontal, vertical), x towards B, z up [N].
+    Returns the force on A and that on B (horizontal, vertical), x towards B, z up [N].
 
     Raises InputError: spans, lengths or properties that no line can have, and a line so long that
     it hangs plumb onto the sea bed.

@@ -63,10 +63,7 @@ def aarsnes(solidity: Values, cos_theta: Values) -> tuple[Values, Values]:
     ``solidity``: projected twine area over panel area [-].
     ``cos_theta``: cosine of the angle between the panel's normal and the flow, in [0, 1].
 
-    Returns
-    -------
-    cd, cl
-        On the panel's whole area [-]; lift is along (u × n) × u.
+    Returns C_D and C_L on the panel's whole area [-]; lift is along (u × n) × u.
 
     Source: Aarsnes, Rudi & Løland (1990).
     """
@@ -92,10 +89,7 @@ def kristiansen_faltinsen(
     ``reynolds``: of a twine in the flow between the twines, d|u| / (nu (1 − Sn)); held in
     ``REYNOLDS_RANGE``, where the cylinder's fit ends.
 
-    Returns
-    -------
-    cd, cl
-        On the panel's whole area [-]; cd is never negative.
+    Returns C_D and C_L on the panel's whole area [-]; C_D is never negative.
 
     Source: Kristiansen & Faltinsen (2012), with the first two terms of their Fourier series.
     """

@@ -29,10 +29,7 @@ def conformal_factor(score: Series, *, independent: float, level: float = 0.95) 
     memories.
     ``level``: share that the interval is to hold.
 
-    Returns
-    -------
-    factor
-        Times the standard deviation.
+    Returns the factor that the standard deviation is multiplied by.
 
     Source: Lei et al. (2018), split conformal prediction. The Student-t quantile is that of the
     mean of a normal sample of unknown spread.

@@ -47,12 +47,8 @@ class LoadRatio:
         Both are drawn towards 0 as in Bayesian linear regression with a Gaussian prior
         (Rasmussen & Williams, 2006, eq. 2.8), with Huber's weights (Huber, 1964).
 
-        Returns
-        -------
-        ratio
-            The ratio.
-        error
-            Log ratio less the ratio's of each window, fitted without the window's block.
+        Returns the ratio, and of each window the log ratio less the ratio's, fitted without the
+        window's block.
         """
         best, error, nothing = LoadRatio(), log_ratio, np.zeros_like(log_ratio)
         if len(np.unique(block)) < LEAST_BLOCKS:

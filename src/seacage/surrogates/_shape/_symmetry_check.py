@@ -46,10 +46,7 @@ def check_symmetry(
     seed
         Of the choice of cases.
 
-    Returns
-    -------
-    asymmetry
-        [m]
+    Returns the asymmetry [m].
     """
     x, node_position = check_shapes(x, node_position, what="check_symmetry")
     check_turnable(x, what="check_symmetry")
