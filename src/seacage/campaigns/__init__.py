@@ -7,9 +7,13 @@ from seacage.campaigns._sea_state_plan import Plan
 from seacage.campaigns._status import CampaignStatus, campaign_status
 from seacage.campaigns._virtual_field._events import Event, read_events
 from seacage.campaigns._virtual_field._family import WATERS, Water
-from seacage.campaigns._virtual_field._field import VirtualField, virtual_field, virtual_field_share
+from seacage.campaigns._virtual_field._field import (
+    VirtualField,
+    true_nets,
+    virtual_field,
+    virtual_field_share,
+)
 from seacage.campaigns._virtual_field._timetable import Timetable
-from seacage.campaigns._virtual_field._true_nets import true_nets
 from seacage.campaigns._virtual_field._true_shapes import TrueShapes, true_shapes
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 

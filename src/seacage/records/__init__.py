@@ -1,12 +1,7 @@
 """Labelled measurements and simulations: their schemas, readers, checks and stores."""
 
 from seacage.records._aligned import Clock, aligned
-from seacage.records._campaign import (
-    CampaignRecord,
-    export_campaign,
-    read_campaign,
-    write_campaign,
-)
+from seacage.records._campaign import CampaignRecord, export_campaign, read_campaign, write_campaign
 from seacage.records._campaign_store import (
     NOT_RUN,
     campaign_results,

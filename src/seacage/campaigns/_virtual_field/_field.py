@@ -28,12 +28,7 @@ from seacage.campaigns._virtual_field._simulated import (
 )
 from seacage.campaigns._virtual_field._timetable import Timetable, reading_times
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
-from seacage.campaigns._virtual_field._weather import (
-    Even,
-    current_at_cage,
-    shear,
-    water_chance,
-)
+from seacage.campaigns._virtual_field._weather import Even, current_at_cage, shear, water_chance
 from seacage.conventions import InputError, Origin, Progress
 from seacage.records import FieldRecord, Record, TrueMeans
 
@@ -256,7 +251,7 @@ def _settle(field: _Settled, profile: Place | None) -> VirtualField:
     cage, buoy, hidden, seed, time, answers, error = field
     _, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
     seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
-    velocity = current_over_net(buoy, seconds, hidden=hidden, seed=seed)
+    velocity = _current_over_net(buoy, seconds, hidden=hidden, seed=seed)
     step = float(seconds[1] - seconds[0])
     sheared = None if profile is None else shear(hidden.profile, len(seconds), step, seed=seed)
     exact = answers.at(velocity, hidden.fouling.grown(seconds / _DAY), shear=sheared)
@@ -285,7 +280,36 @@ def _settle(field: _Settled, profile: Place | None) -> VirtualField:
     return VirtualField(record=replace(truth, sensors=seen), truth=exactly)
 
 
-def current_over_net(
+def true_nets(
+    cage: Cage,
+    buoy: Record,
+    time: Shaped[np.ndarray, " t"],
+    *,
+    hidden: TruthParameters,
+    seed: int,
+    kept: str | Path,
+    workers: int | None = None,
+) -> Float[np.ndarray, "t node 3"]:
+    """Positions of the true net's nodes in a settled virtual field [m].
+
+    ``time``: of the field's readings, as it reads every minute. All others: as for
+    ``virtual_field``, which has filled ``kept`` with the equilibria that are interpolated here.
+    """
+    seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
+    rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))
+    velocity = _current_over_net(buoy, seconds, hidden=hidden, seed=seed)[rows]
+    answers, _ = true_responses(
+        cage,
+        hidden,
+        readings=lambda _, one: one.node_position.reshape(len(one), -1),
+        store=Path(kept),
+        workers=workers,
+    )
+    flat = answers.answers_of(velocity, hidden.fouling.grown(seconds[rows] / _DAY))
+    return flat.reshape(len(rows), -1, 3)
+
+
+def _current_over_net(
     buoy: Record, seconds: Float[np.ndarray, " t"], *, hidden: TruthParameters, seed: int
 ) -> Float[np.ndarray, "t 2"]:
     """Mean current over the net's depth in a settled field, at even times [m/s]."""
