@@ -15,7 +15,7 @@ from seacage.studies._bench._cases import Given
 from seacage.studies._bench._peaks import seas_of
 from seacage.studies._bench._stretches import CURRENT
 from seacage.studies._paper._sensor_baselines import predict_by_sensor_baselines
-from seacage.studies._paper._wave_loads import predict_statistic
+from seacage.studies._paper._wave_loads import predict_statistic, regress_on_sea
 from seacage.twin import (
     FaultWatch,
     Metocean,
@@ -187,10 +187,4 @@ def _regress_on_sea(given: Given, shackle: str, water: Metocean) -> Float[np.nda
     assert windows is not None
     # In the shortest waves no largest value is known between readings.
     windows = windows.rows(windows.maximum > 0.0)
-    line, there = map(_sea_columns, (windows.metocean, water))
-    return np.exp(there @ np.linalg.lstsq(line, np.log(windows.maximum), rcond=None)[0])
-
-
-def _sea_columns(sea: Metocean) -> Float[np.ndarray, "sea column"]:
-    one = np.ones(len(sea))
-    return np.column_stack([one, np.log(sea.hs), np.log(sea.tp), sea.current_velocity])
+    return np.exp(regress_on_sea(windows.metocean, np.log(windows.maximum), water))

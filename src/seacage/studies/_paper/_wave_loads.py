@@ -18,7 +18,7 @@ from seacage.studies._interval import Interval, by_day
 from seacage.studies._paper._boosted_trees import predict_by_trees
 from seacage.studies._split import split
 from seacage.surrogates import Loads, sea_features
-from seacage.twin import Twin, Windows, align, sensor_windows, train
+from seacage.twin import Metocean, Twin, Windows, align, sensor_windows, train
 
 LEVEL_1, LEVEL_2 = "level 1", "level 2"
 BASELINES = ("sensor alone", "gain and offset", "linear", "boosted trees")
@@ -189,11 +189,6 @@ def predict_by_baselines(
     """
     to, back = (np.asarray, np.asarray) if name == "mean" else (np.log, np.exp)
     target, low, there = (to(np.maximum(one, 1.0)) for one in (getattr(before, name), low, there))
-    # Few features for a line: through some hours of all of them it leads anywhere.
-    line, at_line = (
-        np.column_stack([np.ones(len(sea)), np.log(sea.hs), np.log(sea.tp), sea.current_velocity])
-        for sea in (before.metocean, after.metocean)
-    )
     trees, at_trees = (
         sea_features(sea.current_velocity, hs=sea.hs, tp=sea.tp, wave_direction=sea.wave_direction)
         for sea in (before.metocean, after.metocean)
@@ -201,10 +196,20 @@ def predict_by_baselines(
     found = (
         np.full(len(after), np.median(target)),
         np.polyval(np.polyfit(low, target, 1), there),
-        at_line @ np.linalg.lstsq(line, target, rcond=None)[0],
+        regress_on_sea(before.metocean, target, after.metocean),
         predict_by_trees(trees, target, at_trees),
     )
     return {method: np.asarray(back(one)) for method, one in zip(BASELINES, found, strict=True)}
+
+
+def regress_on_sea(water: Metocean, value: Series, at: Metocean) -> HeldOut:
+    """Values in other water, by least squares on the current, log Hs and log Tp."""
+    # Few features for a line: through some hours of all of them it leads anywhere.
+    line, there = (
+        np.column_stack([np.ones(len(sea)), np.log(sea.hs), np.log(sea.tp), sea.current_velocity])
+        for sea in (water, at)
+    )
+    return there @ np.linalg.lstsq(line, value, rcond=None)[0]
 
 
 def predict_statistic(loads: Loads, name: str, line: int) -> tuple[Series, Series, Series]:
