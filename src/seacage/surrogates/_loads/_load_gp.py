@@ -285,11 +285,7 @@ class FittedLoadGP:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The surrogate that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         names = setting_list(settings, "statistics", str)
         processes = gp.processes_from_arrays(settings, "processes", arrays, later=True)
         lines = len(processes[0].centre)

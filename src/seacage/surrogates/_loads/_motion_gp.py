@@ -84,11 +84,7 @@ class FittedMotionGP:
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
-        """The surrogate that ``to_arrays`` described.
-
-        Raises ModelError: a setting or an array is missing, of another kind or shape, or not
-        finite.
-        """
+        """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         (process,) = processes_from_arrays(settings, "processes", arrays, later=True)
         centre = array(arrays, "centre", None)
         return cls(
