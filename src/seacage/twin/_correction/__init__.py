@@ -16,6 +16,7 @@ from seacage.twin._correction._sensor import (
     FixedPrediction,
     Spread,
 )
+from seacage.twin._correction._unlike import lift_over_simulated, unlike
 
 __all__ = [
     "DAY",
@@ -29,8 +30,10 @@ __all__ = [
     "Spread",
     "WindowErrors",
     "discrepancy_std",
+    "lift_over_simulated",
     "relative_discrepancy",
     "relative_in_waves",
+    "unlike",
     "variance_by_change",
     "volume_std",
     "with_discrepancy",
