@@ -54,5 +54,21 @@ def erring_twin(*, cases: int = 400, seed: int = 0) -> Twin:
     return replace(twin, discrepancy=known)
 
 
+def level_1_twin() -> Twin:
+    """A twin without level 2, which does not know how far its nets are off."""
+    twin = stand_in_twin()
+    return replace(twin, models=twin.models.level_1)
+
+
+def unlike_twin() -> Twin:
+    """A twin whose depth sensors are lifted much further than those of any cage of the family."""
+    twin = stand_in_twin()
+    upper = {
+        name: replace(one, gain=0.5 * one.gain) if name.startswith("depth") else one
+        for name, one in twin.models.upper.items()
+    }
+    return replace(twin, models=replace(twin.models, upper=upper))
+
+
 def net_in(twin: Twin, east: float, north: float) -> PredictedNet:
     return PredictedNet.of(twin, answered(twin, east, north))

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache
 from typing import Self
 
 import numpy as np
@@ -17,6 +18,16 @@ SIMILAR_SPEED = 0.15
 SIMILAR_DIRECTION = math.radians(35.0)
 
 NEGLIGIBLE = 0.02  # least weight of a case, over the largest; cases with less are left out
+
+# Errors of nets at level 2 on the family's development cages (decision 99), along the current,
+# across it and upwards. Scale of the whole net's: over a ring's displacement [-], and of the tip of
+# a net that rests [m]; standard deviation of a node's own, over the first [-]
+OF_RING, OF_REST = np.array([0.25, 0.13, 0.18]), np.array([0.8, 1.0, 0.4])
+OWN = np.array([0.25, 0.3, 0.6])
+SHARED = 0.2  # of a displacement, the share that is the mean of all rings: the whole cage drifts
+LEAST_DEPTH = 0.2  # over the tip's, that counts as the least for a net that rests
+TAIL = 5.0  # degrees of freedom of Student's t: some cages are off by much more than others
+DRAWS = 200  # of that distribution
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -86,6 +97,7 @@ class Discrepancy:
             mean=mean,
             deviation=self.ring[rows] - mean,
             rest=np.sqrt(np.einsum("c,crj->rj", weight, self.rest[rows] ** 2)),
+            origin=self.origin,
         )
 
     def _likelihood(self, velocity: Float[np.ndarray, " 2"]) -> Float[np.ndarray, " case"]:
@@ -109,6 +121,7 @@ class ShapeError:
     deviation: Float[np.ndarray, "case ring 3"]  # of each case from that [m]
     # Standard deviation of a node about its ring, along each axis [m]
     rest: Float[np.ndarray, "ring 3"]
+    origin: Origin | None = None  # of the true shapes behind it; None where there are none
 
     @classmethod
     def none(cls, cage: Cage) -> Self:
@@ -118,6 +131,36 @@ class ShapeError:
         nothing = np.zeros((rings, 3))
         return cls(
             ring_of=ring_of, weight=np.ones(1), mean=nothing, deviation=nothing[None], rest=nothing
+        )
+
+    @classmethod
+    def of_family(
+        cls,
+        cage: Cage,
+        moved: Float[np.ndarray, "node 3"],
+        current_velocity: Float[np.ndarray, " 2"],
+    ) -> Self:
+        """Error of a net at level 2, as large as on the development cages of the virtual field.
+
+        ``moved``: of the predicted net, from where it is in still water [m].
+        """
+        ring_of, speed = _rings(cage), np.hypot(*current_velocity)
+        east, north = current_velocity / speed if speed > 0.0 else (1.0, 0.0)
+        axes = np.array([[east, north, 0.0], [-north, east, 0.0], [0.0, 0.0, 1.0]])
+        nodes, height = np.bincount(ring_of), cage.design_position[:, 2]
+        depth = np.bincount(ring_of, height / height.min()) / nodes
+        size = np.bincount(ring_of, np.linalg.norm(moved, axis=1)) / nodes
+        flat = (1.0 - SHARED) * size + SHARED * size.mean()
+        sizes = np.column_stack([flat, flat, depth * size])  # the collar floats
+        rest = np.maximum(depth, LEAST_DEPTH)[:, None] * OF_REST
+        scale = np.hypot(OF_RING * sizes, rest)
+        return cls(
+            ring_of=ring_of,
+            weight=np.full(DRAWS, 1.0 / DRAWS),
+            mean=np.zeros_like(scale),
+            deviation=_draws()[:, None] * scale @ axes,
+            rest=np.sqrt((OWN * scale) ** 2 @ axes**2),
+            origin=Origin.VIRTUAL_FIELD,
         )
 
     @property
@@ -144,6 +187,12 @@ class ShapeError:
         variance = np.einsum("pkj,pj->pk", self.rest[self.ring_of[near.node]] ** 2, near.normal**2)
         variance += node_sigma[near.node] ** 2
         return np.sqrt(np.einsum("pk,pk->p", near.weight, variance))
+
+
+@cache
+def _draws() -> Float[np.ndarray, "case 3"]:
+    half = np.random.default_rng(0).standard_t(TAIL, size=(DRAWS // 2, 3))
+    return np.concatenate([half, -half])  # their mean is that of the distribution
 
 
 def _rings(cage: Cage) -> Int[np.ndarray, " node"]:

@@ -29,8 +29,10 @@ from seacage.twin._correction import (
     WindowErrors,
     discrepancy_std,
     follow_level_1,
+    lift_over_simulated,
     relative_discrepancy,
     relative_in_waves,
+    unlike,
     variance_by_change,
     volume_std,
     with_discrepancy,
@@ -126,6 +128,16 @@ class Models:
             still=self.shape.predict(still).mean[0],
             nodes=tuple(self.cage.depth_sensors[column].node for column in columns),
         )
+
+    @cached_property
+    def unlike(self) -> str:
+        """Why the cage is unlike those of the family, in one sentence; "" where it is not."""
+        lifts = list[float]()
+        if self.net is not None:
+            for column, node in zip(self._net_columns, self.net.nodes, strict=True):
+                still = -float(self.net.still[node, 2])
+                lifts.append(lift_over_simulated(self.corrections[column], still))
+        return unlike(lifts, self.relative_discrepancy)
 
     @property
     def _net_columns(self) -> list[int]:

@@ -187,6 +187,14 @@ class Twin:
         return self.models.parted.predict(self.cage, self.models.loads, water, lines)
 
     @property
+    def unlike(self) -> str:
+        """Why its cage is unlike those that widths without a sensor were learned on.
+
+        One sentence of the sensors' level 2; "" where it is not, or too few sensors have one.
+        """
+        return self.models.unlike
+
+    @property
     def emulator(self) -> LineLoads | None:
         """Loads of lines in waves with intervals about the simulator, not about the sea.
 

@@ -3,10 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from predicted_nets import CAGE, erring_twin, net_in
+from predicted_nets import CAGE, erring_twin, level_1_twin, net_in
 from seacage.conventions import InputError, ModelError, Origin
 from seacage.testing import stand_in_twin
 from seacage.twin import Discrepancy, Twin
+from seacage.twin._discrepancy import ShapeError
 
 
 def known(velocity, drift) -> Discrepancy:
@@ -91,4 +92,44 @@ def test_nothing_teaches_nothing():
 
 def test_a_net_with_a_discrepancy_differs_from_one_without():
     assert net_in(erring_twin(cases=10), 0.4, 0.1).error_origin == "virtual field"
-    assert net_in(stand_in_twin(), 0.4, 0.1).error_origin is None
+    assert net_in(level_1_twin(), 0.4, 0.1).error_origin is None
+
+
+def moved(size: float) -> np.ndarray:
+    """A net that the current has taken east, the deeper the farther."""
+    depth = CAGE.design_position[:, 2:] / CAGE.design_position[:, 2].min()
+    return size * depth * [1.0, 0.0, 0.0]
+
+
+def test_a_net_at_level_2_errs_as_nets_of_the_family_do():
+    twin = stand_in_twin()
+    net = net_in(twin, 0.4, 0.1)
+    assert net.error_origin == "virtual field"
+    wall = net.expected_position[CAGE.node(4, 0)][None]
+    assert 0.4 < net.clearance(wall).sigma[0] < 5.0
+
+
+def test_the_error_of_the_family_is_larger_in_faster_water_and_along_it():
+    slow, fast = (ShapeError.of_family(CAGE, moved(one), np.array([0.5, 0.0])) for one in (1, 20))
+    small, large = (one.deviation.std(axis=0) for one in (slow, fast))
+    assert (small[-1] > 0.3).all()
+    # The collar floats: it errs upwards by as little in any current.
+    assert (large[1:] > small[1:]).all()
+    assert (large[:, 0] > large[:, 1]).all()
+
+
+@pytest.mark.parametrize("degrees", [30.0, 90.0, 225.0])
+def test_the_error_of_the_family_turns_with_the_current(degrees):
+    angle = np.deg2rad(degrees)
+    cos, sin = np.cos(angle), np.sin(angle)
+    turn = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    east = ShapeError.of_family(CAGE, moved(9.0), np.array([0.5, 0.0]))
+    turned = ShapeError.of_family(CAGE, moved(9.0) @ turn, 0.5 * np.array([cos, sin]))
+    np.testing.assert_allclose(turned.deviation, east.deviation @ turn, atol=1e-12)
+
+
+def test_the_error_of_the_family_is_known_in_slack_water():
+    error = ShapeError.of_family(CAGE, moved(0.0), np.zeros(2))
+    assert error.weight.sum() == pytest.approx(1.0)
+    assert np.isfinite(error.deviation).all()
+    np.testing.assert_allclose(error.deviation.mean(axis=0), 0.0, atol=1e-12)

@@ -107,7 +107,7 @@ def train(
         | {"calibrated": {name: window.calibrated for name, window in windows.items()}}
         | {"parted": {one.line: [one.learned, one.simulated] for one in kinds}}
         | {"line_loads": {name: asdict(one) for name, one in lines.items()}}
-        | {"left_out": left_out},
+        | {"left_out": left_out, "unlike": twin.unlike},
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),
@@ -122,6 +122,7 @@ def train(
                 for name, one in lines.items()
             ),
             *(("Left out", sentence) for sentence in left_out),
+            *([("Unlike others", twin.unlike)] if twin.unlike else []),
         ],
     )
 
@@ -162,8 +163,8 @@ def _gaps(simulator: str, twin: "Twin") -> list[str]:
         found.append("How far depths swing in waves: it needs these loads and node_position_std.")
     if twin.models.net is not None:
         found.append(
-            "Intervals of the net at level 2: those that seacage's simulations have (decision 78); "
-            f"none were measured with {simulator}."
+            "Intervals of the net at level 2, and probabilities of clearance: those that seacage's "
+            f"simulations have (decisions 78 and 99); none were measured with {simulator}."
         )
     return found
 

@@ -121,6 +121,7 @@ def _about(net: PredictedNet, frame: schemas.FrameName, below: float) -> dict[st
         "in_domain": net.in_domain,
         "state_age_s": round(net.age_s, 3),
         "shape_error": None if net.error_origin is None else str(net.error_origin),
+        "unlike": net.unlike,
         "below_m": below,
     }
 

@@ -107,6 +107,13 @@ class _NetAnswer(AbstractAnswer):
             "neither sigma_m nor any probability."
         ),
     ]
+    unlike: Annotated[
+        str,
+        Field(
+            description="Why the cage is unlike those that the shape's error comes from, in one "
+            "sentence; empty where it is not, or not known."
+        ),
+    ] = ""
     below_m: float
 
 

@@ -16,6 +16,7 @@ from seacage.twin._correction._sensor import (
     FixedPrediction,
     Spread,
 )
+from seacage.twin._correction._unlike import lift_over_simulated, unlike
 from seacage.twin._correction._window_edge import WindowEdge, follow_level_1
 
 __all__ = [
@@ -32,8 +33,10 @@ __all__ = [
     "WindowErrors",
     "discrepancy_std",
     "follow_level_1",
+    "lift_over_simulated",
     "relative_discrepancy",
     "relative_in_waves",
+    "unlike",
     "variance_by_change",
     "volume_std",
     "with_discrepancy",

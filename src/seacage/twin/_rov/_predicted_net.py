@@ -11,6 +11,7 @@ from jaxtyping import Float, Int
 from seacage.cage import Cage, Nearest
 from seacage.conventions import InputError, Origin, SeacageError, duration_text
 from seacage.ocean import SeaState
+from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import ShapeError
 from seacage.twin._events import Answered
 from seacage.twin._metocean import Metocean
@@ -53,6 +54,8 @@ class PredictedNet:
     error: ShapeError  # distribution of the prediction's error, beyond the surrogate's
     # Origin of the true shapes behind ``error``; None where there are none
     error_origin: Origin | None
+    # Sentence where the cage is unlike those of the family; "" where it is not, or not known
+    unlike: str = ""
     # The time of the prediction, and the age of the reading it rests on [s]
     t: datetime
     age_s: float
@@ -92,16 +95,17 @@ class PredictedNet:
                 f"{duration_text(most_age_s)} is the limit given. Wait for the next reading, or "
                 "allow a stale state."
             )
-        velocity = water.current_velocity[0]
         known = twin.discrepancy
         if known is not None and known.level < answer.shape_level:
             answer = twin.models.level_1.answer(water, [""])
+        error = _error_of(twin, answer, water.current_velocity[0])
         return cls(
             cage=twin.cage,
             node_position=answer.node_position[0],
             node_sigma=answer.node_sigma[0],
-            error=known.at(twin.cage, velocity) if known else ShapeError.none(twin.cage),
-            error_origin=known.origin if known else None,
+            error=error,
+            error_origin=error.origin,
+            unlike=twin.unlike,
             t=answered.t,
             age_s=age_s,
             in_domain=bool(answer.in_domain[0]),
@@ -192,6 +196,16 @@ class PredictedNet:
             p_below=np.clip(expected.p_below(below) @ weight, 0.0, 1.0),
             p_through=np.clip(np.where(near.inside, 1.0 - p_inside, p_inside), 0.0, 1.0),
         )
+
+
+def _error_of(twin: Twin, answer: Answer, velocity: Float[np.ndarray, " 2"]) -> ShapeError:
+    """Error as the twin's own discrepancy has it, or at level 2 as the family's cages do."""
+    if twin.discrepancy is not None:
+        return twin.discrepancy.at(twin.cage, velocity)
+    if twin.models.net is None:
+        return ShapeError.none(twin.cage)
+    moved = answer.node_position[0] - twin.models.net.still
+    return ShapeError.of_family(twin.cage, moved, velocity)
 
 
 def _check(point: Float[np.ndarray, "point 3"], below: float) -> None:

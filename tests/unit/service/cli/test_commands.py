@@ -447,6 +447,7 @@ def test_a_twin_is_trained_and_scored_on_what_did_not_teach_it(tmp_path, monkeyp
     field, out = ("--field", tmp_path / "field"), ("--out", tmp_path / "twin")
     reply = answer("train", "--campaign", tmp_path, *field, *out, "--points", 30, "--days", 2)
     assert [name for name, level in reply["level"].items() if level == 2] == list(two)
+    assert reply["unlike"] == ""  # one depth sensor does not show it
     scores = tmp_path / "scores"
     scored = answer("score", "--twin", tmp_path / "twin", *field, "--out", scores)
     assert [one["sensor"] for one in scored["sensors"]] == list(two)

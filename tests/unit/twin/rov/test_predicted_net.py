@@ -4,10 +4,18 @@ import numpy as np
 import pytest
 
 from brute import brute_distance
-from predicted_nets import CAGE, NOW, answered, currents, drifting, erring_twin, net_in
+from predicted_nets import (
+    CAGE,
+    NOW,
+    answered,
+    currents,
+    drifting,
+    erring_twin,
+    level_1_twin,
+    net_in,
+)
 from seacage.conventions import InputError
 from seacage.ocean import SeaState
-from seacage.testing import stand_in_twin
 from seacage.twin import Answered, PredictedNet, StaleError
 from seacage.twin._rov._clearance import sample_path
 
@@ -60,7 +68,7 @@ def test_of_a_hundred_foretellings_so_many_come_true():
 
 
 def test_without_a_known_error_the_surrogates_spread_is_all_there_is():
-    net = net_in(stand_in_twin(), 0.4, 0.2)
+    net = net_in(level_1_twin(), 0.4, 0.2)
     found = net.clearance(near_net(net, np.random.default_rng(1), 50))
     np.testing.assert_allclose(found.expected, found.distance, atol=1e-9)
     assert (found.sigma <= net.node_sigma.max() + 1e-9).all()

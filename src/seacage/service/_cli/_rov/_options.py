@@ -80,6 +80,8 @@ def about_rows(
     learned = answer.shape_error
     error = f"learned from: {learned}" if learned else "not known, and so no probability"
     rows = [("Shape error", error), ("State", f"{answer.state_age_s:.0f} s old")]
+    if answer.unlike:
+        rows.append(("Unlike others", answer.unlike))
     if not answer.in_domain:
         rows.append(("Extrapolating", "the twin has not learned about such a current"))
     return rows if out is None else [*rows, ("Written", str(out))]

@@ -1,9 +1,10 @@
 import json
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
 
-from predicted_nets import erring_twin
+from predicted_nets import erring_twin, level_1_twin, unlike_twin
 from running_service import Running, buoy, eventually
 from seacage.conventions import InputError
 from seacage.service._cli._app import app
@@ -45,6 +46,14 @@ def test_a_folder_is_queried_about_points_in_a_current(twin):
     assert far["p_below_1m"] == 0.0
     assert answer["shape_error"] == "virtual field"
     assert "Point 1" in run("clearance", "--point", "18,0,-8", *twin).stdout
+
+
+def test_a_cage_unlike_any_of_the_family_is_reported_beside_the_answer(tmp_path, twin):
+    unlike_twin().write(tmp_path / "other")
+    words = ["--point", "18,0,-8", "--twin", tmp_path / "other", *CURRENT]
+    assert answer_of("clearance", *words)["unlike"].startswith("This cage is unlike")
+    assert "Unlike others" in run("clearance", *words).stdout
+    assert "Unlike others" not in run("clearance", "--point", "18,0,-8", *twin).stdout
 
 
 def test_a_path_that_is_too_likely_to_be_too_near_ends_with_four(twin, way):
@@ -148,6 +157,7 @@ def test_a_running_service_is_queried_about_its_net_now(live: Running, way, tmp_
     to = ["--to", live.address, "--token", token]
     refused = run("clearance", way, *to, code=3)
     assert "buoy-1" in refused.stderr
+    live.cage.past = replace(live.cage.past, twin=level_1_twin())
     live.post(buoy(-1))
     eventually(live.state, lambda state: state["valid"])
     answer = answer_of("clearance", way, "--path", *to)
