@@ -177,11 +177,13 @@ def _request(
     *,
     every_s: float | None = None,
     timetable: Timetable | None = None,
+    hidden: TruthParameters,
     **truth: Any,
 ) -> FieldRequest:
     """A request whose readings and stretches are as given or as usual."""
-    time, timetable = reading_times(buoy, every_s, usual_s=2.0), timetable or Timetable.over(buoy)
-    truth = {"waves": None, "events": (), **truth}
+    time = reading_times(buoy, every_s, usual_s=2.0)
+    timetable = timetable or Timetable.over(buoy, refined=hidden.netting.refined)
+    truth = {"waves": None, "events": (), "hidden": hidden, **truth}
     return FieldRequest(cage=cage, buoy=buoy, time=time, timetable=timetable, **truth)
 
 

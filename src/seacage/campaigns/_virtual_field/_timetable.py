@@ -13,6 +13,8 @@ from seacage.conventions import InputError, count_times
 from seacage.dynamics import Damage, simulation_lanes
 from seacage.records import Record
 
+LONGEST_STEP = 0.002  # of a net that is not refined, as in the low fidelity [s]
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timetable:
@@ -46,14 +48,17 @@ class Timetable:
         count_times(self.stretch, self.mean, "Timetable: stretch")
 
     @classmethod
-    def over(cls, buoy: Record, *, one_in: int = 1) -> Self:
-        """Stretches of about an hour that fill the kernel's lanes.
+    def over(cls, buoy: Record, *, one_in: int = 1, refined: int = 2) -> Self:
+        """Stretches of about an hour that fill the kernel's lanes, in steps of 2 ms / refined.
 
         A lane that stays empty costs as much as one that is simulated, so the record's time is
         cut into nearly whole vectors of stretches, an even number of them: 36 hours into 31
         stretches of 70 minutes, 48 days into hours.
+
+        ``refined``: of the true net (``NettingTruth``); on longer bars a longer step is as stable.
         """
-        plain, lanes = cls(one_in=one_in), 2 * simulation_lanes()
+        plain = cls(one_in=one_in, time_step=LONGEST_STEP / refined)
+        lanes = 2 * simulation_lanes()
         rounds = max(1, round(_span(buoy) / (lanes * plain.stretch)))
         means = math.ceil(_span(buoy) / (rounds * lanes * plain.mean) - 1e-9)
         return replace(plain, stretch=max(means, 1) * plain.mean)

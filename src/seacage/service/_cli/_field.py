@@ -95,7 +95,7 @@ def virtual(
         options |= {
             "kept": out / "stretches",
             "waves": None if calm else _waves(waves, buoy, parameters, seed=seed),
-            "timetable": Timetable.over(buoy, one_in=one_in),
+            "timetable": Timetable.over(buoy, one_in=one_in, refined=parameters.netting.refined),
         }
     elif waves is not None or calm or one_in > 1 or share is not None:
         raise refusal(

@@ -62,6 +62,12 @@ def test_stretches_fill_the_lanes(hours: float, minutes: float, stretches: int) 
     assert len(cut(readings, each, always=np.zeros(readings, bool))) == stretches
 
 
+def test_a_net_of_longer_bars_takes_longer_steps() -> None:
+    buoy = generated_current(0, start=datetime(2020, 1, 18, tzinfo=UTC), days=0.1, every_s=360.0)
+    steps = [Timetable.over(buoy, refined=times).time_step for times in (1, 2)]
+    assert steps == [0.002, 0.001] == [0.002, Timetable.over(buoy).time_step]
+
+
 def test_every_reading_belongs_to_one_stretch() -> None:
     stretches = cut(100, 7, always=NEVER, breaks=[(0, CUT), (41, HOLE), (99, CUT)])
     covered = np.concatenate([np.arange(100)[one.rows] for one in stretches])
