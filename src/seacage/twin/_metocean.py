@@ -145,10 +145,11 @@ class Metocean(Rows):
         """Whether the other holds the same numbers; two unknown ones are the same."""
         return np.array_equal(self.whole, other.whole, equal_nan=True)
 
-    def limited(self, *, current_speed: float, hs: float) -> Self:
+    def limited(self, *, current_speed: float | Float[np.ndarray, "case 1"], hs: float) -> Self:
         """Return the nearest milder water: slower and lower, in the same directions.
 
-        ``current_speed``, ``hs``: largest that are left as they are [m/s], [m].
+        ``current_speed``, ``hs``: largest that are left as they are, the former also by row [m/s],
+        [m].
         """
         speed = np.linalg.norm(self.current_velocity, axis=-1, keepdims=True)
         slower = np.minimum(1.0, current_speed / np.maximum(speed, current_speed))

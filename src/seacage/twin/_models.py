@@ -438,19 +438,19 @@ class Models:
         together, columns = self.together, list(self.corrections)
         assert together is not None, "level 2 of no sensor"
         own = together.latent(water.features(self.inputs), low, steepness)
-        speed = np.linalg.norm(water.current_velocity, axis=1)
-        for edge in np.unique(together.edge_speed[together.edge_weight > 0.0]):
-            rows = np.flatnonzero(speed > edge)
-            if not len(rows):
-                continue
-            at_edge = water.rows(rows).limited(current_speed=edge, hs=math.inf)
-            low_edge = Prediction(
-                mean=self._sensors_and_bridles(at_edge)[:, columns], std=low.std[rows]
-            )
+        speed, weight = np.linalg.norm(water.current_velocity, axis=1), together.edge_weight
+        edges = np.unique(together.edge_speed[weight > 0.0])
+        rows, edge = np.nonzero(speed[:, None] > edges)
+        if len(rows):
+            # Each row at each edge that it is beyond; there it counts for the sensors of that edge.
+            at_edge = water.rows(rows).limited(current_speed=edges[edge, None], hs=math.inf)
+            mean = self._sensors_and_bridles(at_edge)[:, columns]
+            low_edge = Prediction(mean=mean, std=low.std[rows])
             here = together.latent(at_edge.features(self.inputs), low_edge, steepness[rows])
-            weight = together.edge_weight * (together.edge_speed == edge)
-            found = follow_level_1(own.rows(rows), here, low.mean[rows] - low_edge.mean, weight)
-            own.mean[rows], own.std[rows] = found.mean, found.std
+            found = follow_level_1(own.rows(rows), here, low.mean[rows] - mean, weight)
+            its, sensor = np.nonzero((edges[edge, None] == together.edge_speed) & (weight > 0.0))
+            own.mean[rows[its], sensor] = found.mean[its, sensor]
+            own.std[rows[its], sensor] = found.std[its, sensor]
         return own
 
     def _widen_outside(

@@ -90,6 +90,29 @@ def test_a_twin_follows_level_1_beyond_the_edge_and_has_no_step_there():
     np.testing.assert_array_equal(whole.sensor.mean[:, others], plain.sensor.mean[:, others])
 
 
+def test_sensors_with_other_edges_each_answer_as_they_do_alone():
+    water = Metocean.without_waves(np.array([[0.1, 0.0], [0.35, 0.1], [-0.6, 0.3]]))
+    edges = {
+        "shackle-1": WindowEdge(speed=0.3, weight=0.7),
+        "depth-1": WindowEdge(speed=0.5, weight=0.4),
+    }
+    twin = stand_in_twin()
+    plain = {name: replace(one, edge=WindowEdge()) for name, one in twin.models.upper.items()}
+
+    def answer(some):
+        upper = {name: replace(one, edge=some.get(name, one.edge)) for name, one in plain.items()}
+        return replace(twin, models=replace(twin.models, upper=upper)).predict(water).sensor
+
+    both, none = answer(edges), answer({})
+    for column, name in enumerate(twin.sensor_names):
+        alone = answer({name: edges[name]}) if name in edges else none
+        np.testing.assert_allclose(both.mean[:, column], alone.mean[:, column], rtol=1e-9)
+        np.testing.assert_allclose(both.std[:, column], alone.std[:, column], rtol=1e-9)
+        moved = np.abs(both.mean[:, column] - none.mean[:, column]) > 1e-9
+        beyond = np.array([0.1, 0.36, 0.67]) > edges[name].speed if name in edges else [False] * 3
+        np.testing.assert_array_equal(moved, beyond)
+
+
 def test_more_readings_move_the_edge_outwards_alone():
     edge = WindowEdge(speed=0.5, weight=0.3)
     calm, fast = (Metocean.of(stand_in_seas(3, current_speed=one)) for one in (0.1, 2.0))
