@@ -3,15 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from predicted_nets import level_1_twin
 from seacage.conventions import Flag, InputError
 from seacage.ocean import SeaState
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Answered, Metocean, replay
-
-
-def level_1_twin():
-    twin = stand_in_twin()
-    return replace(twin, models=twin.models.level_1)
 
 
 def numbers(answer):
