@@ -1,36 +1,43 @@
 """How often the fault detector alarms for nothing on cages of the family, and how soon it finds.
 
-    python tools/score_alarms.py CAMPAIGN OUT --truths 1-10 [--water coastal] [--days 365]
+    python tools/score_alarms.py CAMPAIGN OUT --truths 1-10 [--water coastal] [--days 365] [--waves]
 
-CAMPAIGN is one of ``seacage campaign run --plan current --method settle``. Each truth is a settled
+CAMPAIGN is one of ``seacage campaign run --plan current --method settle``, or with ``--waves`` of
+``--plan paper``; the twin then has the waves among its inputs. Each truth is a settled
 virtual field whose sensors have noise, gains and biases but no faults, cleaned as the family draws
 it for 48 days, over and over. The twin trains on the first 25 days (shackles on half a day of
 them); from then on all sensors live, and the fault detector and its alarms see the residuals of
 each half hour. Whatever it raises there is false, but for ``net.net`` within two weeks of a
 cleaning, which no sensor can tell from a hole. Then, from the seventh day on, a fault at a time.
-Fields and residuals are kept in OUT; stopped, it goes on. Virtual field.
+With ``--waves`` the fields have those (``_fields_in_waves``); with ``--field`` there is one cage,
+that of a field simulated in time. Fields and residuals are kept in OUT; stopped, it goes on.
+Virtual field.
 """
 
 import argparse
+import json
 from collections import Counter
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from datetime import datetime, timedelta
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from _family_fields import SCORED_FROM, START, Water, options_for, values_at
+from _fields_in_waves import in_waves, simulated
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, generated_current, virtual_field
-from seacage.records import FieldRecord, read_campaign
+from seacage.records import FieldRecord, Record, moment, read_campaign
 from seacage.studies._bench._scores import poisson_interval
 from seacage.studies._bench._stretches import without_outages
 from seacage.twin import FaultWatch, Training, Twin, block_residuals, residual_blocks, train
 from seacage.twin._faults._fault_watch import SETTINGS
 from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._metocean import Input
 
 SHACKLES = (5.0, 5.5)  # days that train these; the depth sensors train until ``SCORED_FROM``
 CLEANED_EVERY = 48.0  # days after which the family's cleanings come again
@@ -46,10 +53,18 @@ def main() -> None:
     options = options_for(__doc__, truths="1-10")
     options.add_argument("--water", choices=("tame", "coastal"), action="append")
     options.add_argument("--days", type=float, default=365.0)
+    options.add_argument("--waves", action="store_true")
+    options.add_argument("--field", type=Path)
+    options.add_argument("--hidden", type=Path)
     given = options.parse_args()
     campaign = read_campaign(given.campaign)
     cage = Cage.from_toml(campaign.cage_toml)
-    base = train(cage, campaign, training=Training(restarts=0))
+    inputs: tuple[Input, ...] = ("current", "waves") if given.waves else ("current",)
+    base = train(cage, campaign, training=Training(restarts=0, inputs=inputs))
+    if given.field:
+        BASE.append(base)
+        _sum_up("its own water", {0: _watched(_residuals_in_time(given), cage)})
+        return
     for water in given.water or ("tame", "coastal"):
         score = partial(_score, water, given)
         # Twins are inherited, not pickled: their kernels hold functions.
@@ -58,18 +73,26 @@ def main() -> None:
 
 
 def _score(water: Water, given: argparse.Namespace, number: int) -> dict[str, Any]:
-    kept = _kept_residuals(water, given, number)
-    return _watched(kept, BASE[0].cage)
+    """What is raised on a cage of the family, once found."""
+    waves = ", in waves" if given.waves else ""
+    kept = given.out / f"{water}-{number}, {SCORED_FROM + given.days:g} days{waves}"
+    found = kept.with_name(f"{kept.name}.json")
+    if not found.is_file():
+        residuals = _kept_residuals(kept.with_name(f"{kept.name}.npz"), water, given, number)
+        found.write_text(json.dumps(_watched(residuals, BASE[0].cage)))
+    return json.loads(found.read_text())
 
 
-def _kept_residuals(water: Water, given: argparse.Namespace, number: int) -> dict[str, np.ndarray]:
+def _kept_residuals(
+    kept: Path, water: Water, given: argparse.Namespace, number: int
+) -> dict[str, np.ndarray]:
     """Residuals of a cage by half hours, once made."""
-    days = SCORED_FROM + given.days
-    kept = given.out / f"{water}-{number}, {days:g} days.npz"
     if not kept.is_file():
+        days = SCORED_FROM + given.days
         hidden = TruthParameters.of_family(number, water=water, unseal=given.unseal)
         hidden = _without_faults(hidden, days)
         (base,) = BASE
+        folder = given.out / f"{water}-{number}"
         field = virtual_field(
             base.cage,
             generated_current(number, start=START, days=days),
@@ -77,14 +100,32 @@ def _kept_residuals(water: Water, given: argparse.Namespace, number: int) -> dic
             seed=number,
             method="settle",
             every_s=READ_EVERY,
-            kept=given.out / f"{water}-{number}",
+            kept=folder,
             workers=1,
         ).record
-        twin = train(base.cage, None, _taught(field), base=base, training=Training(restarts=1))
+        if given.waves:
+            field = in_waves(base.cage, field, hidden=hidden, seed=number, kept=folder)
+        twin = _trained(field)
         found = _residuals(twin, field)
         found["cleaned"] = np.array(hidden.fouling.cleaned_days)
         np.savez(kept, allow_pickle=False, **found)
     return dict(np.load(kept))
+
+
+def _residuals_in_time(given: argparse.Namespace) -> dict[str, np.ndarray]:
+    """Residuals of a field that was simulated in time, of seed 0."""
+    hidden = TruthParameters.read(given.hidden)
+    field = simulated(given.field, hidden=without_outages(hidden), seed=0)
+    found = _residuals(_trained(field), field)
+    found["cleaned"] = np.array(hidden.fouling.cleaned_days)
+    return found
+
+
+def _trained(field: FieldRecord) -> Twin:
+    """Level 2 by the first 25 days, of the shackles by half a day."""
+    (base,) = BASE
+    training = Training(restarts=1, inputs=base.models.inputs)
+    return train(base.cage, None, _taught(field), base=base, training=training)
 
 
 def _without_faults(hidden: TruthParameters, days: float) -> TruthParameters:
@@ -97,12 +138,17 @@ def _without_faults(hidden: TruthParameters, days: float) -> TruthParameters:
 
 
 def _taught(field: FieldRecord) -> FieldRecord:
-    """What trains: 25 days, of the shackles half a day."""
+    first = moment(field.buoy.time[0])
+
+    def within(one: Record, days: tuple[float, float]) -> Record:
+        return one.between(*(first + timedelta(days=day) for day in days))
+
+    whole = (0.0, SCORED_FROM)
     sensors = {
-        name: one.between(*map(_at, SHACKLES if "tension_kn" in one.values else (0.0, SCORED_FROM)))
+        name: within(one, SHACKLES if "tension_kn" in one.values else whole)
         for name, one in field.sensors.items()
     }
-    return replace(field, buoy=field.buoy.between(_at(0.0), _at(SCORED_FROM)), sensors=sensors)
+    return replace(field, buoy=within(field.buoy, whole), sensors=sensors)
 
 
 def _residuals(twin: Twin, field: FieldRecord) -> dict[str, np.ndarray]:
@@ -181,7 +227,7 @@ def _at(day: float) -> datetime:
     return START + timedelta(days=day)
 
 
-def _sum_up(water: Water, found: Mapping[int, dict[str, Any]]) -> None:
+def _sum_up(water: str, found: Mapping[int, dict[str, Any]]) -> None:
     years, false, cleaned = 0.0, Counter[str](), 0
     for number, one in found.items():
         own = Counter(name for name, day in one["raised"] if not _by_cleaning(name, day, one))

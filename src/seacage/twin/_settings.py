@@ -79,6 +79,12 @@ class FaultDetectorSettings:
         which it is estimated: half a week.
     most_square
         Largest square of a residual that one block adds to that.
+    noisy
+        That mean square from which on it is estimated while evidence rises too, of a sensor whose
+        interval was carried over: half a day of training may have shown too little of its noise.
+    cleared_factor
+        Factor on that mean square, or on its prior where that is larger, of a sensor whose alarm
+        has cleared [-], so that the same noise does not raise it again and again.
     inflation
         Factor on that mean square, because residuals last from one block to the next [-]; the
         twin's own variance is the least.
@@ -138,6 +144,8 @@ class FaultDetectorSettings:
     mean_square: float = 0.5
     mean_square_memory: float = 168.0
     most_square: float = 9.0
+    noisy: float = 1.0
+    cleared_factor: float = 4.0
     inflation: float = 2.0
     calm: float = 0.25
     drift: float = 1.0

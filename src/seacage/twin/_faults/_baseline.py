@@ -1,16 +1,18 @@
 """Baseline of the residuals: the offset, drag and noise of each sensor without any fault."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._student_t import kalman_update
 from seacage.twin._json_keys import json_keys
 from seacage.twin._settings import FaultDetectorSettings
+
+Mask = Bool[np.ndarray, " sensor"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -89,12 +91,24 @@ class Baseline:
         block: ResidualBlock,  # of sensors of the same names
         faults: Iterable[Shift],  # the shifts of active faults
         settings: FaultDetectorSettings,  # of the fault detector
+        *,
+        noise_of: Mask | None = None,  # received sensors of which the noise alone is updated
     ) -> Self:
         """Return a copy updated by a block, less the shifts of active faults."""
         received = block.received
         shift = self.shift(block, settings).plus(faults)
         residual = (block.residual - shift.mean)[received]
         spread = shift.covariance[np.ix_(received, received)]
+        # The square of each sensor's residual given those of the others.
+        mean_square, known = np.array(self.mean_square), np.linalg.inv(spread)
+        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
+        change = np.zeros_like(mean_square)
+        change[received] = alone * self._inflation(settings)[received] - mean_square[received]
+        of = received if noise_of is None else noise_of
+        mean_square[of] += change[of] / settings.mean_square_memory
+        after = replace(self, mean_square=tuple(mean_square.tolist()))
+        if noise_of is not None:
+            return after
         size, covariance = np.array(self.size), np.array(self.covariance)
         response = self._response(block)[received]
         noise = spread - response @ covariance @ response.T
@@ -107,17 +121,18 @@ class Baseline:
             noise=noise,
             degrees_of_freedom=settings.degrees_of_freedom,
         )
-        # The square of each sensor's residual given those of the others.
-        mean_square, known = np.array(self.mean_square), np.linalg.inv(spread)
-        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
-        square = alone * self._inflation(settings)[received]
-        mean_square[received] += (square - mean_square[received]) / settings.mean_square_memory
-        return replace(
-            self,
-            size=tuple(size.tolist()),
-            covariance=as_tuples(covariance),
-            mean_square=tuple(mean_square.tolist()),
-        )
+        return replace(after, size=tuple(size.tolist()), covariance=as_tuples(covariance))
+
+    def noisy(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Mask:
+        """Mask of received sensors that are noisier than what was carried over to them."""
+        return block.received & block.carried & (np.array(self.mean_square) > settings.noisy)
+
+    def after_alarm(self, sensors: Collection[str], settings: FaultDetectorSettings) -> Self:
+        """Return a copy for sensors whose alarms have cleared: their noise may have raised them."""
+        mean_square = np.array(self.mean_square)
+        more = settings.cleared_factor * np.maximum(mean_square, settings.mean_square)
+        noisier = np.where(np.isin(self.sensors, list(sensors)), more, mean_square)
+        return replace(self, mean_square=tuple(noisier.tolist()))
 
     def _inflation(self, settings: FaultDetectorSettings) -> Float[np.ndarray, " sensor"]:
         """Factor on the twin's variance of each sensor [-]."""

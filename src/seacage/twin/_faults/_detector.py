@@ -105,9 +105,13 @@ class FaultDetector:
         evidence = update_evidence(before.evidence, block, before.baseline, among, ours, settings)
         after = replace(before, evidence=_limit(evidence, ours, settings))
         best = max((value for _, value in after.ranking()), default=0.0)
-        if best < settings.calm * settings.limit:
-            shifts = shifts_of_active(evidence, among, ours, settings).values()
-            after = replace(after, baseline=before.baseline.updated(block, shifts, settings))
+        shifts = shifts_of_active(evidence, among, ours, settings).values()
+        noisy = None  # all is updated where there is little evidence of a fault
+        if best >= settings.calm * settings.limit:
+            noisy = before.baseline.noisy(block, settings)
+            noisy &= [f"irregular.{name}" not in ours for name in block.sensors]
+        baseline = before.baseline.updated(block, shifts, settings, noise_of=noisy)
+        after = replace(after, baseline=baseline)
         return replace(after, waited=before.waited + 1 if best >= settings.limit else 0)
 
     def _beside(
@@ -118,7 +122,10 @@ class FaultDetector:
         if baseline is not self.baseline:
             return replace(self, baseline=baseline, evidence={}, active=active, waited=0)
         if active == self.active:
-            return replace(self, baseline=baseline)
+            return self
+        # A stuck sensor's alarm has no evidence, and its end says nothing of noise.
+        cleared = self.cusums().keys() & {*self.active} - {*active}
+        baseline = baseline.after_alarm({one.partition(".")[2] for one in cleared}, settings)
         if any(not name.startswith("irregular") for name in {*active} ^ {*self.active}):
             baseline = baseline.widened(settings)
         evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in active}

@@ -15,7 +15,6 @@ from seacage.twin._alarms._policy import AlarmPolicy
 from seacage.twin._faults._detector import FaultDetector
 from seacage.twin._faults._residuals import ResidualBlock
 from seacage.twin._faults._sensor import SensorMonitor
-from seacage.twin._metocean import Metocean
 from seacage.twin._settings import FaultDetectorSettings
 from seacage.twin._twin import Twin
 
@@ -42,7 +41,8 @@ def block_residuals(
     error = (reading - answer.sensor.mean)[:, columns]
     rows = {int(one): np.flatnonzero((block == one) & known) for one in np.unique(block[known])}
     current = np.array([water.current_velocity[own].mean(axis=0) for own in rows.values()])
-    here = Metocean.without_waves(current)
+    lasts = np.array([one[-1] for one in rows.values()], dtype=int)  # rows whose waves count
+    here = replace(water.rows(lasts), current_velocity=current)
     around = twin.predict(here.joined(here, here.sides(SETTINGS.current_step))).without_nodes()
     _, east, west, north, south = around.sensor.mean[:, columns].reshape(5, len(rows), -1)
     gradient = np.stack([east - west, north - south], axis=2) / (2.0 * SETTINGS.current_step)
@@ -67,6 +67,7 @@ def residual_blocks(found: Mapping[str, np.ndarray]) -> Iterator[ResidualBlock]:
             received=np.ones(len(share), dtype=bool),
             residual=found["residual"][row],
             own_sd=found["std"][row] * share,
+            carried=~found["own"],
             gradient=found["gradient"][row],
             current=found["current"][row],
             tension=found["tension"][row],

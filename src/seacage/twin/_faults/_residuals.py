@@ -43,6 +43,7 @@ class ResidualBlock:
     # that is independent of the other sensors [N] or [m]
     residual: Float[np.ndarray, " sensor"]
     own_sd: Float[np.ndarray, " sensor"]
+    carried: Bool[np.ndarray, " sensor"]  # whose interval was carried over from other sensors
     # Of the prediction over the current (east, north) [N s/m] or [s]
     gradient: Float[np.ndarray, "sensor 2"]
     current: Float[np.ndarray, "2"]  # at the buoy, (east, north) [m/s]
@@ -84,13 +85,14 @@ def close_block(
         return None
     columns = [answer.sensor_names.index(name) for name in names]
     _, east, west, north, south = answer.sensor.mean[:, columns]
-    own = [twin.models.upper[name].spread.by == "own" for name in names]
-    share = np.where(own, settings.own_share, settings.carried_share)
+    carried = np.array([twin.models.upper[name].spread.by != "own" for name in names], dtype=bool)
+    share = np.where(carried, settings.carried_share, settings.own_share)
     return ResidualBlock(
         sensors=names,
         received=received,
         residual=np.array([one.error / max(one.count, 1) for one in each]) * received,
         own_sd=answer.sensor.std[0, columns] * share,
+        carried=carried,
         gradient=np.column_stack([east - west, north - south]) / (2.0 * settings.current_step),
         current=current,
         tension=answer.bridle_tension.mean[0],

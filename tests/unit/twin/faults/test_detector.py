@@ -44,6 +44,7 @@ def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> Residual
         received=received,
         residual=np.where(received, error, 0.0),
         own_sd=OWN,
+        carried=np.array([name.startswith("shackle") for name in NAMES]),
         gradient=SLOPE,
         current=tide * NORTH,
         tension=TENSION,
@@ -164,6 +165,33 @@ def test_the_alarm_of_a_repaired_sensor_clears_within_two_days():
     assert watch.raised == ["irregular.depth-1"]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [41, 43])
+def test_a_shackle_that_is_noisy_at_spring_tides_alarms_at_the_first_of_them_alone(seed):
+    days = 20
+    spring = np.arange(days * DAY) % (5 * DAY) < 2 * DAY
+    more = noise(seed, days * DAY, memory=0.8, size=4.0) * only("shackle-4", 1.0)
+    watch = learned().through(quiet(seed + 1, days) + spring[:, None] * more)
+    assert watch.raised == ["irregular.shackle-4"]
+
+
+def test_an_alarm_that_clears_makes_its_sensor_noisier_and_no_other():
+    watch = learned().through(quiet(11, 1.0) + only("depth-1", 10.0 * OWN[0]))
+    before = watch.detector.baseline.mean_square
+    after = watch.detector.updated(
+        block(np.zeros(8)), ACE, SETTINGS, active=frozenset()
+    ).baseline.mean_square
+    assert after[0] > 0.9 * SETTINGS.cleared_factor * before[0]
+    np.testing.assert_allclose(after[1:], before[1:], rtol=0.05)
+
+
+def test_a_sensor_that_was_stuck_is_no_noisier_when_its_alarm_clears():
+    watch = learned()
+    stuck = replace(watch.detector, active=("irregular.depth-1",))
+    after = stuck.updated(block(np.zeros(8)), ACE, SETTINGS, active=frozenset())
+    assert after.baseline.mean_square[0] <= watch.detector.baseline.mean_square[0]
+
+
 def test_sensors_that_fail_one_after_the_other_each_raise_an_alarm():
     first, then = only("depth-1", 8.0 * OWN[0]), only("shackle-4", 8.0 * OWN[6])
     watch = learned().through(quiet(15, 0.5) + first).through(quiet(16, 0.5) + first - then)
@@ -279,9 +307,8 @@ def test_hypotheses_that_stay_close_raise_one_alarm_that_names_both():
 def test_evidence_starts_again_where_other_sensors_have_level_2():
     before = learned().through(quiet(33, 0.2) - only("depth-1", 1.5)).detector
     seen = block(np.zeros(8))
-    four = {
-        name: getattr(seen, name)[:4] for name in ("received", "residual", "own_sd", "gradient")
-    }
+    cut_off = ("received", "residual", "own_sd", "carried", "gradient")
+    four = {name: getattr(seen, name)[:4] for name in cut_off}
     fewer = replace(seen, sensors=NAMES[:4], **four)
     after = before.updated(fewer, ACE, SETTINGS, active=frozenset({"irregular.depth-1"}))
     assert before.cusums()["irregular.depth-1"] > LIMIT
