@@ -1,6 +1,6 @@
 """Virtual fields in waves whose sensors never fall silent.
 
-``in_waves`` gives a year of a settled field waves, by some hundred hours that are simulated. Waves,
+``in_waves`` gives a year of a settled field waves, by some sixty hours that are simulated. Waves,
 inertia and the profile of the current add to a sensor's mean what its settled equilibrium
 lacks. That is found in hours spread over the year, simulated in time, and a Gaussian process of
 current, waves and growth says it for all other times. What the process cannot say, hour by hour,
@@ -24,7 +24,7 @@ from seacage.records import FieldRecord, Record, TrueMeans
 from seacage.surrogates import GaussianProcess, block_means, current_features, wave_features
 from seacage.twin import Metocean, TravelTime
 
-SIMULATED = 100  # hours of the record
+SIMULATED = 60  # hours of the record
 EVERY = 4.0  # between readings of those [s]
 MEAN = 600  # length of means [s]
 HOUR, DAY = 3600.0, 86400.0
@@ -48,7 +48,7 @@ def in_waves(
     # An hour's means are alike, so that hours are held out whole.
     hour = np.cumsum(np.diff(means.time, prepend=means.time[:1]) > np.timedelta64(3600, "s"))
     held = hour % 5 == 4
-    process = GaussianProcess(noise="per-output", restarts=1)
+    process = GaussianProcess(restarts=1)
     left = added[held] - process.fit(x[~held], added[~held]).predict(x[held]).mean
     for name, whole, rest in zip(field.sensors, added[held].T, left.T, strict=True):
         said = f"{whole.mean():.2f} more in waves, give or take {whole.std():.2f}"
