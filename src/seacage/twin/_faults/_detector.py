@@ -111,8 +111,8 @@ class FaultDetector:
             noisy = before.baseline.noisy(block, settings)
             noisy &= [f"irregular.{name}" not in ours for name in block.sensors]
         baseline = before.baseline.updated(block, shifts, settings, noise_of=noisy)
-        after = replace(after, baseline=baseline)
-        return replace(after, waited=before.waited + 1 if best >= settings.limit else 0)
+        waited = before.waited + 1 if best >= settings.limit else 0
+        return replace(after, baseline=baseline, waited=waited)
 
     def _beside(
         self, active: tuple[str, ...], block: ResidualBlock, settings: FaultDetectorSettings

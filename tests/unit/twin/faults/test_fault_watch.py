@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
 from seacage.twin import Metocean, Training, block_residuals, train
@@ -25,6 +26,7 @@ def twin_in_waves():
     return train(cage, stand_in_campaign(cage, seas), field, training=training), field
 
 
+@pytest.mark.slow
 def test_a_half_hour_is_predicted_at_its_mean_current_in_its_last_waves():
     twin, field = twin_in_waves()
     time = field.buoy.time[[10, 11, 12, 40, 41, 42]]
