@@ -103,7 +103,8 @@ class Spectrum:
     def of(cls, covariance: NN, noise: Float[np.ndarray, " output"]) -> Self:
         """Decompose the covariance."""
         jitter = JITTERS[0] * float(np.diag(covariance).max())
-        value, basis = scipy.linalg.eigh(covariance, check_finite=False)
+        # Divide and conquer: the default driver fails where many eigenvalues are nearly the same.
+        value, basis = scipy.linalg.eigh(covariance, driver="evd", check_finite=False)
         return cls(basis=basis, value=np.maximum(value, 0.0) + jitter, noise=noise)
 
     @property

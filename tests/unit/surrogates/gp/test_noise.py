@@ -14,6 +14,7 @@ from seacage.surrogates import (
     mnll,
     rmse,
 )
+from seacage.surrogates._gp._factor import Spectrum
 from seacage.surrogates._gp._noise import (
     FREEDOM,
     AbstractNoise,
@@ -61,6 +62,17 @@ def test_each_output_has_its_own_noise() -> None:
     assert rmse(clean, own.predict(LINE).mean[:, 1]) < 0.5 * rmse(
         clean, shared.predict(LINE).mean[:, 1]
     )
+
+
+def test_a_covariance_of_points_that_stand_apart_is_decomposed() -> None:
+    # A search for length scales may come by one; LAPACK's default driver fails at each second.
+    for seed in range(20):
+        x = np.random.default_rng(seed).normal(size=(100, 2))
+        apart = np.sum((x[:, None] - x) ** 2, axis=2) / 0.02**2
+        covariance = np.exp(-8.0 - 0.5 * apart)
+        found = Spectrum.of(covariance, np.array([1e-6]))
+        rebuilt = (found.basis * found.value) @ found.basis.T
+        np.testing.assert_allclose(rebuilt, covariance, atol=1e-6 * covariance.max())
 
 
 def test_one_output_of_unlike_ones_answers_as_within_the_whole() -> None:
