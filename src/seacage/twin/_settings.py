@@ -72,6 +72,10 @@ class FaultDetectorSettings:
     offset_sd, drag_sd
         Prior standard deviations of a sensor's offset, and of the relative change of the drag
         that it responds to [-]. Training windows are short and nets get fouled.
+    direction_sd
+        Prior standard deviation of the first two harmonics of a sensor's offset over the direction
+        of the current, in one of 0.5 m/s; in proportion to its speed. Training windows see few
+        directions.
     baseline_memory
         Blocks after which the baseline forgets: sixteen weeks. A change within days is none of it.
     mean_square, mean_square_memory
@@ -140,6 +144,7 @@ class FaultDetectorSettings:
     degrees_of_freedom: float = 8.0
     offset_sd: float = 0.5
     drag_sd: float = 0.1
+    direction_sd: float = 0.5
     baseline_memory: float = 5376.0
     mean_square: float = 0.5
     mean_square_memory: float = 168.0

@@ -1,4 +1,4 @@
-"""Baseline of the residuals: the offset, drag and noise of each sensor without any fault."""
+"""Baseline of the residuals: the offset by direction, drag and noise of sensors without a fault."""
 
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
@@ -13,6 +13,10 @@ from seacage.twin._json_keys import json_keys
 from seacage.twin._settings import FaultDetectorSettings
 
 Mask = Bool[np.ndarray, " sensor"]
+
+# Of each sensor: offset, drag, and two harmonics of the offset over the current's direction
+_TERMS = 6
+_SPEED = 0.5  # at which these are in standard deviations; a tide's [m/s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -36,7 +40,8 @@ class Baseline:
     """Estimate of the residuals without any fault."""
 
     sensors: tuple[str, ...] = ()  # their names; none before the first block
-    # The offset of each, in standard deviations, then the relative drag of each [-]
+    # The offset of each, in standard deviations, the relative drag of each [-], and the harmonics
+    # of the offset of each one after the other, in standard deviations
     size: tuple[float, ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
     mean_square: tuple[float, ...] = ()  # of each one's own residuals, in variances
@@ -44,12 +49,22 @@ class Baseline:
     __pydantic_config__ = json_keys(mean_square="restless")
 
     def of(self, sensors: tuple[str, ...], settings: FaultDetectorSettings) -> Self:
-        """Return the same, or the prior of these sensors where it was estimated of others."""
-        if sensors == self.sensors:
+        """Return the same, or the prior of these sensors where it was estimated of others.
+
+        What was saved without harmonics goes on with their prior.
+        """
+        count = _TERMS * len(sensors)
+        if sensors != self.sensors:
+            mean_square = (settings.mean_square,) * len(sensors)
+            other = replace(self, sensors=sensors, size=(0.0,) * count, mean_square=mean_square)
+            return other.widened(settings)
+        known = len(self.size)
+        if known == count:
             return self
-        size, mean_square = (0.0,) * (2 * len(sensors)), (settings.mean_square,) * len(sensors)
-        other = replace(self, sensors=sensors, size=size, mean_square=mean_square)
-        return other.widened(settings)
+        covariance = self._prior(settings)
+        covariance[:known, :known] = self.covariance
+        size = self.size + (0.0,) * (count - known)
+        return replace(self, size=size, covariance=as_tuples(covariance))
 
     def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
@@ -57,20 +72,20 @@ class Baseline:
 
     def after_net_change(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy in which the drag on the netting may have changed by any usual amount."""
-        drag = np.arange(2 * len(self.sensors)) >= len(self.sensors)
+        drag = np.arange(_TERMS * len(self.sensors)) // len(self.sensors) == 1
         change = settings.net_change_sd**2 * (drag[:, None] & drag)
         return replace(self, covariance=as_tuples(self._prior(settings) + change))
 
     def after_move(self, sensor: str, settings: FaultDetectorSettings) -> Self:
         """Return a copy in which nothing is known of one sensor, which was moved."""
         own = np.array([name == sensor for name in self.sensors], dtype=bool)
-        both = np.concatenate([own, own])  # its offset and its drag
-        sd = np.repeat([settings.wide_sd, settings.net_change_sd], len(own))
-        before = np.reshape(self.covariance, (len(sd), len(sd)))
-        covariance = np.where(both[:, None] | both, np.diag(sd**2), before)
+        whole = np.tile(own, _TERMS)
+        sd = [settings.wide_sd, settings.net_change_sd, *[settings.direction_sd] * (_TERMS - 2)]
+        change = np.diag(np.repeat(sd, len(own)) ** 2)
+        covariance = np.where(whole[:, None] | whole, change, np.array(self.covariance))
         return replace(
             self,
-            size=tuple(np.where(both, 0.0, self.size).tolist()),
+            size=tuple(np.where(whole, 0.0, self.size).tolist()),
             covariance=as_tuples(covariance),
             mean_square=tuple(np.where(own, settings.mean_square, self.mean_square).tolist()),
         )
@@ -139,12 +154,17 @@ class Baseline:
         return np.maximum(1.0, settings.inflation * np.array(self.mean_square))
 
     def _prior(self, settings: FaultDetectorSettings) -> Float[np.ndarray, "size size"]:
-        sd = np.repeat([settings.offset_sd, settings.drag_sd], len(self.sensors))
-        return np.diag(sd**2)
+        sd = [settings.offset_sd, settings.drag_sd, *[settings.direction_sd] * (_TERMS - 2)]
+        return np.diag(np.repeat(sd, len(self.sensors)) ** 2)
 
     @staticmethod
     def _response(block: ResidualBlock) -> Float[np.ndarray, "sensor size"]:
-        return np.hstack([np.diag(block.own_sd), np.diag(block.drag)])
+        east, north = block.current / _SPEED
+        speed = max(float(np.hypot(east, north)), 1e-6)
+        second = (east**2 - north**2) / speed, 2.0 * east * north / speed
+        offset = np.diag(block.own_sd)
+        harmonics = [one * offset for one in (east, north, *second)]
+        return np.hstack([offset, np.diag(block.drag), *harmonics])
 
 
 def as_tuples(matrix: Float[np.ndarray, "size size"]) -> tuple[tuple[float, ...], ...]:

@@ -57,10 +57,11 @@ class FaultDetector:
         stays where these are active.
         """
         kind, _, source = alarm.partition(".")
+        before = self.baseline.of(self.baseline.sensors, settings)
         if kind == "net":
-            baseline = self.baseline.after_net_change(settings)
+            baseline = before.after_net_change(settings)
         else:
-            baseline = self.baseline.after_move(source, settings)
+            baseline = before.after_move(source, settings)
         kept = {*self.active} - {alarm}
         evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in kept}
         after = self.interrupted()
@@ -119,10 +120,10 @@ class FaultDetector:
     ) -> Self:
         """Drop the evidence of what is not active where that, or the sensors, have changed."""
         baseline = self.baseline.of(block.sensors, settings)
-        if baseline is not self.baseline:
+        if baseline.sensors != self.baseline.sensors:
             return replace(self, baseline=baseline, evidence={}, active=active, waited=0)
         if active == self.active:
-            return self
+            return replace(self, baseline=baseline)
         # A stuck sensor's alarm has no evidence, and its end says nothing of noise.
         cleared = self.cusums().keys() & {*self.active} - {*active}
         baseline = baseline.after_alarm({one.partition(".")[2] for one in cleared}, settings)

@@ -13,6 +13,7 @@ from seacage.cage import Cage
 from seacage.conventions import Flag, InputError
 from seacage.records import Sample
 from seacage.twin import AlarmBook, FaultDetectorSettings
+from seacage.twin._faults._baseline import Baseline, as_tuples
 from seacage.twin._faults._cusum import Evidence
 from seacage.twin._faults._detector import FaultDetector
 from seacage.twin._faults._hypotheses import hypotheses, load_shares
@@ -154,6 +155,47 @@ def test_a_drift_raises_its_sensor_alone_and_within_days(way):
 
 def test_a_sensor_that_is_usually_off_by_as_much_is_not_raised():
     assert Watched().through(quiet(9, 3.0) + only("depth-2", 0.8 * OWN[1])).raised == []
+
+
+def turning(days: float, seed: int = 51) -> list[ResidualBlock]:
+    """Blocks in a tide that turns round, in which shackle-1 is off by the current's direction."""
+    found = list[ResidualBlock]()
+    for number, error in enumerate(quiet(seed, days)):
+        angle = 2.0 * np.pi * number / 24.8
+        current = (0.5 + 0.2 * np.sin(number / 100.0)) * np.array([np.cos(angle), np.sin(angle)])
+        off = 2.5 * np.cos(angle) - 1.5 * np.sin(2.0 * angle)
+        seen = block(error + only("shackle-1", off * OWN[3]))
+        found.append(replace(seen, current=current))
+    return found
+
+
+def test_the_baseline_finds_how_a_sensor_s_offset_turns_with_the_current():
+    blocks = turning(10.0)
+    baseline = Baseline().of(NAMES, SETTINGS)
+    for seen in blocks[: 8 * DAY]:
+        baseline = baseline.updated(seen, [], SETTINGS)
+    late = blocks[8 * DAY :]
+    shift = np.array([baseline.shift(seen, SETTINGS).mean[3] for seen in late])
+    residual = np.array([seen.residual[3] for seen in late])
+    assert np.std(residual - shift) < 0.6 * np.std(residual)
+    still = np.array([baseline.shift(seen, SETTINGS).mean[0] for seen in late])
+    assert np.abs(still).max() < 0.5 * OWN[0]
+
+
+def test_a_baseline_that_was_saved_without_harmonics_goes_on_and_so_does_an_alarm():
+    parted = learned().through(quiet(45, 1.0) + cut(7))
+    now, rows = parted.detector.baseline, 2 * len(NAMES)
+    covariance = as_tuples(np.array(now.covariance)[:rows, :rows])
+    before = replace(
+        parted.detector, baseline=replace(now, size=now.size[:rows], covariance=covariance)
+    )
+    seen = block((quiet(47, 0.1) + cut(7))[0])
+    after = before.updated(seen, ACE, SETTINGS, active=parted.active)
+    assert after.cusums()["bridle.bridle-8"] > LIMIT
+    assert len(after.baseline.size) == len(now.size)
+    for alarm in ("net.net", "irregular.depth-1"):
+        changed = before.after_change(alarm, SETTINGS)
+        assert changed.updated(seen, ACE, SETTINGS, active=parted.active).baseline.sensors == NAMES
 
 
 @pytest.mark.slow
