@@ -69,12 +69,7 @@ def _ensure_twin(stages: Stages, cage: Cage, teaching: FieldRecord) -> Path:
 
     def make(begun: Path) -> None:
         campaign = stages.ensure_campaign(
-            "campaign",
-            cage,
-            PLAN,
-            method="simulate",
-            second_moment=True,
-            spin_up=SPIN_UP,
+            "campaign", cage, PLAN, method="simulate", second_moment=True, spin_up=SPIN_UP
         )
         twin = train(cage, campaign, teaching, training=training, progress=stages.progress)
         error = learned_discrepancy(twin, workers=stages.workers, progress=stages.progress)

@@ -102,11 +102,7 @@ def block_means(
 
 
 def block_bootstrap(
-    difference: Float[np.ndarray, " tick"],
-    *,
-    block: int,
-    seed: int,
-    draws: int = 2000,
+    difference: Float[np.ndarray, " tick"], *, block: int, seed: int, draws: int = 2000
 ) -> tuple[float, float, float]:
     """Mean of a paired difference in time order, and the 95 % interval it is known to.
 

@@ -96,9 +96,7 @@ class TravelTime:
         currents = np.full_like(water.currents, np.nan)
         if known.any():
             currents[known] = self.current_at(
-                microseconds(buoy.time[sound]),
-                reported.currents[sound],
-                microseconds(time[known]),
+                microseconds(buoy.time[sound]), reported.currents[sound], microseconds(time[known])
             )
         return water.with_currents(currents)
 

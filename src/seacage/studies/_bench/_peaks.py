@@ -17,12 +17,7 @@ GROWTH = 0.5  # of the net
 
 
 def sea_field(
-    cage: Cage,
-    hidden: TruthParameters,
-    start: datetime,
-    *,
-    count: int,
-    chance: np.random.Generator,
+    cage: Cage, hidden: TruthParameters, start: datetime, *, count: int, chance: np.random.Generator
 ) -> tuple[FieldRecord, dict[str, np.ndarray], Float[np.ndarray, "sea window shackle"]]:
     """A field of the first half of some seas, the others, and the largest load of each ten minutes.
 

@@ -53,10 +53,7 @@ def write_rows(
     rows: Rows = {}
     for part in (
         _mean_loads(given, twin, learners),
-        {
-            OURS: {"node_m": _nets(given, twin)},
-            LOW: {"node_m": _nets(given, level_1.settled)},
-        },
+        {OURS: {"node_m": _nets(given, twin)}, LOW: {"node_m": _nets(given, level_1.settled)}},
         _alarms(given, twin),
         _peaks(given, level_1.waves),
     ):

@@ -18,10 +18,7 @@ _QUANTITIES = {"m": "rise", "kN": "tension"}
 
 
 def page_values(
-    gaps: Sequence[SensorGap],
-    rescalings: Sequence[Rescaling],
-    null: NullCase,
-    fouling: FoulingGap,
+    gaps: Sequence[SensorGap], rescalings: Sequence[Rescaling], null: NullCase, fouling: FoulingGap
 ) -> dict[str, object]:
     """Figures and names of the page besides the scores."""
     titles = [f"{gap.sensor}: {_QUANTITIES[gap.unit]} [{gap.unit}]" for gap in gaps]

@@ -53,36 +53,34 @@ class Baseline:
 
         What was saved without harmonics goes on with their prior.
         """
-        count = _TERMS * len(sensors)
+        before = self
         if sensors != self.sensors:
-            mean_square = (settings.mean_square,) * len(sensors)
-            other = replace(self, sensors=sensors, size=(0.0,) * count, mean_square=mean_square)
-            return other.widened(settings)
-        known = len(self.size)
-        if known == count:
-            return self
-        covariance = self._prior(settings)
-        covariance[:known, :known] = self.covariance
-        size = self.size + (0.0,) * (count - known)
-        return replace(self, size=size, covariance=as_tuples(covariance))
+            before = type(self)(sensors=sensors, mean_square=(settings.mean_square,) * len(sensors))
+        missing = _TERMS * len(sensors) - len(before.size)
+        if missing == 0:
+            return before
+        covariance = _prior(sensors, settings)
+        covariance[:-missing, :-missing] = before.covariance or 0.0
+        size = before.size + (0.0,) * missing
+        return replace(before, size=size, covariance=as_tuples(covariance))
 
     def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
-        return replace(self, covariance=as_tuples(self._prior(settings)))
+        return replace(self, covariance=as_tuples(_prior(self.sensors, settings)))
 
     def after_net_change(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy in which the drag on the netting may have changed by any usual amount."""
         drag = np.arange(_TERMS * len(self.sensors)) // len(self.sensors) == 1
         change = settings.net_change_sd**2 * (drag[:, None] & drag)
-        return replace(self, covariance=as_tuples(self._prior(settings) + change))
+        return replace(self, covariance=as_tuples(_prior(self.sensors, settings) + change))
 
     def after_move(self, sensor: str, settings: FaultDetectorSettings) -> Self:
         """Return a copy in which nothing is known of one sensor, which was moved."""
         own = np.array([name == sensor for name in self.sensors], dtype=bool)
         whole = np.tile(own, _TERMS)
-        sd = [settings.wide_sd, settings.net_change_sd, *[settings.direction_sd] * (_TERMS - 2)]
-        change = np.diag(np.repeat(sd, len(own)) ** 2)
-        covariance = np.where(whole[:, None] | whole, change, np.array(self.covariance))
+        wide = replace(settings, offset_sd=settings.wide_sd, drag_sd=settings.net_change_sd)
+        unknown = _prior(self.sensors, wide)
+        covariance = np.where(whole[:, None] | whole, unknown, self.covariance)
         return replace(
             self,
             size=tuple(np.where(whole, 0.0, self.size).tolist()),
@@ -127,7 +125,9 @@ class Baseline:
         size, covariance = np.array(self.size), np.array(self.covariance)
         response = self._response(block)[received]
         noise = spread - response @ covariance @ response.T
-        covariance = covariance + (self._prior(settings) - covariance) / settings.baseline_memory
+        covariance = (
+            covariance + (_prior(self.sensors, settings) - covariance) / settings.baseline_memory
+        )
         size, covariance = kalman_update(
             size,
             covariance,
@@ -153,18 +153,20 @@ class Baseline:
         """Factor on the twin's variance of each sensor [-]."""
         return np.maximum(1.0, settings.inflation * np.array(self.mean_square))
 
-    def _prior(self, settings: FaultDetectorSettings) -> Float[np.ndarray, "size size"]:
-        sd = [settings.offset_sd, settings.drag_sd, *[settings.direction_sd] * (_TERMS - 2)]
-        return np.diag(np.repeat(sd, len(self.sensors)) ** 2)
-
     @staticmethod
     def _response(block: ResidualBlock) -> Float[np.ndarray, "sensor size"]:
         east, north = block.current / _SPEED
         speed = max(float(np.hypot(east, north)), 1e-6)
         second = (east**2 - north**2) / speed, 2.0 * east * north / speed
-        offset = np.diag(block.own_sd)
-        harmonics = [one * offset for one in (east, north, *second)]
-        return np.hstack([offset, np.diag(block.drag), *harmonics])
+        harmonics = np.kron([east, north, *second], np.diag(block.own_sd))
+        return np.hstack([np.diag(block.own_sd), np.diag(block.drag), harmonics])
+
+
+def _prior(
+    sensors: tuple[str, ...], settings: FaultDetectorSettings
+) -> Float[np.ndarray, "size size"]:
+    sd = [settings.offset_sd, settings.drag_sd, *[settings.direction_sd] * (_TERMS - 2)]
+    return np.diag(np.repeat(sd, len(sensors)) ** 2)
 
 
 def as_tuples(matrix: Float[np.ndarray, "size size"]) -> tuple[tuple[float, ...], ...]:

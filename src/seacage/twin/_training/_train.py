@@ -430,11 +430,7 @@ def _fit_level_2(data: CageTraining, sensor: str) -> Correction | None:
 
 
 def _with_level_2_in_waves(
-    models: Models,
-    data: CageTraining,
-    field: FieldRecord,
-    sensor: str,
-    travel_time: TravelTime,
+    models: Models, data: CageTraining, field: FieldRecord, sensor: str, travel_time: TravelTime
 ) -> Models:
     """Return models with level 2 in waves, if it shows a gain: of a shackle's line, or a depth."""
     own, bridles = data.sensors.get(sensor), {one.name: one.bridle for one in models.cage.shackles}

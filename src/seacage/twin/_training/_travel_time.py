@@ -81,9 +81,7 @@ class _Series:
             water = replace(water, profile=None)
         sound = np.isfinite(water.currents).all(axis=1)
         own = cls(
-            pairs=pairs,
-            time=microseconds(field.buoy.time[sound]),
-            velocity=water.currents[sound],
+            pairs=pairs, time=microseconds(field.buoy.time[sound]), velocity=water.currents[sound]
         )
         enough = len(pairs) >= LEAST_MEANS and len(np.unique(own.day % 2)) == 2
         return own if enough and np.ptp(pairs.value) > 0.0 else None
