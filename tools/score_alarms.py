@@ -1,6 +1,7 @@
 """How often the fault detector alarms for nothing on cages of the family, and how soon it finds.
 
-    python tools/score_alarms.py CAMPAIGN OUT --truths 1-10 [--water coastal] [--days 365] [--waves]
+    python tools/score_alarms.py CAMPAIGN OUT --truths 1-10 [--water coastal] [--days 365]
+        [--waves] [--written-down]
 
 CAMPAIGN is one of ``seacage campaign run --plan current --method settle``, or with ``--waves`` of
 ``--plan paper``; the twin then has the waves among its inputs. Each truth is a settled
@@ -9,6 +10,7 @@ it for 48 days, over and over. The twin trains on the first 25 days (shackles on
 them); from then on all sensors live, and the fault detector and its alarms see the residuals of
 each half hour. Whatever it raises there is false, but for ``net.net`` within two weeks of a
 cleaning, which no sensor can tell from a hole. Then, from the seventh day on, a fault at a time.
+With ``--written-down`` people tell the fault detector of each cleaning, as they should.
 With ``--waves`` the fields have those (``_fields_in_waves``); with ``--field`` there is one cage,
 that of a field simulated in time. Fields and residuals are kept in OUT; stopped, it goes on.
 Virtual field.
@@ -17,7 +19,7 @@ Virtual field.
 import argparse
 import json
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from datetime import datetime, timedelta
@@ -54,6 +56,7 @@ def main() -> None:
     options.add_argument("--water", choices=("tame", "coastal"), action="append")
     options.add_argument("--days", type=float, default=365.0)
     options.add_argument("--waves", action="store_true")
+    options.add_argument("--written-down", action="store_true")
     options.add_argument("--field", type=Path)
     options.add_argument("--hidden", type=Path)
     given = options.parse_args()
@@ -63,7 +66,8 @@ def main() -> None:
     base = train(cage, campaign, training=Training(restarts=0, inputs=inputs))
     if given.field:
         BASE.append(base)
-        _sum_up("its own water", {0: _watched(_residuals_in_time(given), cage)})
+        residuals = _residuals_in_time(given)
+        _sum_up("its own water", {0: _watched(residuals, cage, told=given.written_down)})
         return
     for water in given.water or ("tame", "coastal"):
         score = partial(_score, water, given)
@@ -76,10 +80,12 @@ def _score(water: Water, given: argparse.Namespace, number: int) -> dict[str, An
     """What is raised on a cage of the family, once found."""
     waves = ", in waves" if given.waves else ""
     kept = given.out / f"{water}-{number}, {SCORED_FROM + given.days:g} days{waves}"
-    found = kept.with_name(f"{kept.name}.json")
+    told = ", written down" if given.written_down else ""
+    found = kept.with_name(f"{kept.name}{told}.json")
     if not found.is_file():
         residuals = _kept_residuals(kept.with_name(f"{kept.name}.npz"), water, given, number)
-        found.write_text(json.dumps(_watched(residuals, BASE[0].cage)))
+        watched = _watched(residuals, BASE[0].cage, told=given.written_down)
+        found.write_text(json.dumps(watched))
     return json.loads(found.read_text())
 
 
@@ -167,15 +173,19 @@ def _blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
     return dict(zip(days.tolist(), residual_blocks(kept), strict=True))
 
 
-def _watched(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[str, Any]:
-    """What is raised without a fault, and the days until each fault is."""
+def _watched(kept: Mapping[str, np.ndarray], cage: Cage, *, told: bool) -> dict[str, Any]:
+    """What is raised without a fault, and the days until each fault is.
+
+    ``told``: whether the fault detector is told of cleanings.
+    """
     blocks, names = _blocks_of(kept), kept["sensors"].tolist()
+    cleaned = kept["cleaned"].tolist() if told else []
     watch = FaultWatch.over(cage, names)
     raised, known = list[tuple[str, float]](), None
     for day, block in blocks.items():
         if known is None and day >= SCORED_FROM + QUIET_DAYS:
             known = watch.copied()
-        raised += [(name, round(day, 2)) for name in watch.see(_at(day), block)]
+        raised += [(name, round(day, 2)) for name in _see(watch, day, block, cleaned)]
     assert known is not None
     late = {day: one for day, one in blocks.items() if day >= SCORED_FROM + QUIET_DAYS}
     return {
@@ -184,7 +194,7 @@ def _watched(kept: Mapping[str, np.ndarray], cage: Cage) -> dict[str, Any]:
         "cleaned": kept["cleaned"].tolist(),
         "delays": {
             fault: [
-                _delay(known.copied(), late, fault, row)
+                _delay(known.copied(), late, fault, row, cleaned)
                 for row, name in enumerate(names)
                 if name.startswith(kind)
             ]
@@ -207,8 +217,21 @@ def _shift(fault: str, cage: Cage, block: ResidualBlock, row: int, days: float) 
 FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
 
 
+def _see(
+    watch: FaultWatch, day: float, block: ResidualBlock, cleaned: list[float]
+) -> Iterator[str]:
+    """Let a block be seen, once a cleaning within it has been told."""
+    if any(day - SETTINGS.block_s / DAY < one <= day for one in cleaned):
+        watch.detector = watch.detector.after_change("net.net", SETTINGS)
+    return watch.see(_at(day), block)
+
+
 def _delay(
-    watch: FaultWatch, blocks: Mapping[float, ResidualBlock], fault: str, row: int
+    watch: FaultWatch,
+    blocks: Mapping[float, ResidualBlock],
+    fault: str,
+    row: int,
+    cleaned: list[float],
 ) -> float | None:
     """Days until a fault of a sensor raises its alarm; None where none is in time."""
     first = next(iter(blocks))
@@ -217,7 +240,7 @@ def _delay(
             break
         residual = block.residual.copy()
         residual[row] += _shift(fault, watch.cage, block, row, day - first)
-        raised = list(watch.see(_at(day), replace(block, residual=residual)))
+        raised = list(_see(watch, day, replace(block, residual=residual), cleaned))
         if f"irregular.{block.sensors[row]}" in raised:
             return day - first
     return None

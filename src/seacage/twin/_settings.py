@@ -86,6 +86,9 @@ class FaultDetectorSettings:
     noisy
         That mean square from which on it is estimated while evidence rises too, of a sensor whose
         interval was carried over: half a day of training may have shown too little of its noise.
+    carried_factor, carried_blocks
+        Factor on the variance of such a sensor when it is first evaluated [-]; and the blocks
+        within which it falls to 1: half a day.
     cleared_factor
         Factor on that mean square, or on its prior where that is larger, of a sensor whose alarm
         has cleared [-], so that the same noise does not raise it again and again.
@@ -150,6 +153,8 @@ class FaultDetectorSettings:
     mean_square_memory: float = 168.0
     most_square: float = 9.0
     noisy: float = 1.0
+    carried_factor: float = 8.0
+    carried_blocks: float = 24.0
     cleared_factor: float = 4.0
     inflation: float = 2.0
     calm: float = 0.25

@@ -45,24 +45,26 @@ class Baseline:
     size: tuple[float, ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
     mean_square: tuple[float, ...] = ()  # of each one's own residuals, in variances
+    blocks: int = 0  # that these sensors have been evaluated for
 
     __pydantic_config__ = json_keys(mean_square="restless")
 
-    def of(self, sensors: tuple[str, ...], settings: FaultDetectorSettings) -> Self:
-        """Return the same, or the prior of these sensors where it was estimated of others.
+    def of(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Self:
+        """Return the same, or the prior of a block's sensors where it was estimated of others."""
+        if block.sensors == self.sensors:
+            return self.with_harmonics(settings)
+        square = (settings.mean_square,) * len(block.sensors)
+        return type(self)(sensors=block.sensors, mean_square=square).with_harmonics(settings)
 
-        What was saved without harmonics goes on with their prior.
-        """
-        before = self
-        if sensors != self.sensors:
-            before = type(self)(sensors=sensors, mean_square=(settings.mean_square,) * len(sensors))
-        missing = _TERMS * len(sensors) - len(before.size)
+    def with_harmonics(self, settings: FaultDetectorSettings) -> Self:
+        """Return the same, or with the prior of what a state that was saved before has not."""
+        missing = _TERMS * len(self.sensors) - len(self.size)
         if missing == 0:
-            return before
-        covariance = _prior(sensors, settings)
-        covariance[:-missing, :-missing] = before.covariance or 0.0
-        size = before.size + (0.0,) * missing
-        return replace(before, size=size, covariance=as_tuples(covariance))
+            return self
+        covariance = _prior(self.sensors, settings)
+        covariance[:-missing, :-missing] = self.covariance or 0.0
+        size = self.size + (0.0,) * missing
+        return replace(self, size=size, covariance=as_tuples(covariance))
 
     def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
@@ -92,7 +94,7 @@ class Baseline:
         """Return the shift of the readings in a block, with the covariance of its residuals."""
         response = self._response(block)
         covariance = response @ np.array(self.covariance) @ response.T
-        own = block.own_sd**2 * self._inflation(settings)
+        own = block.own_sd**2 * self._inflation(block, settings)
         # The current that the buoy did not measure, which all sensors share.
         water = settings.water_sd**2 * block.gradient @ block.gradient.T
         return Shift(
@@ -116,10 +118,12 @@ class Baseline:
         mean_square, known = np.array(self.mean_square), np.linalg.inv(spread)
         alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
         change = np.zeros_like(mean_square)
-        change[received] = alone * self._inflation(settings)[received] - mean_square[received]
+        change[received] = (
+            alone * self._inflation(block, settings)[received] - mean_square[received]
+        )
         of = received if noise_of is None else noise_of
         mean_square[of] += change[of] / settings.mean_square_memory
-        after = replace(self, mean_square=tuple(mean_square.tolist()))
+        after = replace(self, mean_square=tuple(mean_square.tolist()), blocks=self.blocks + 1)
         if noise_of is not None:
             return after
         size, covariance = np.array(self.size), np.array(self.covariance)
@@ -149,9 +153,13 @@ class Baseline:
         noisier = np.where(np.isin(self.sensors, list(sensors)), more, mean_square)
         return replace(self, mean_square=tuple(noisier.tolist()))
 
-    def _inflation(self, settings: FaultDetectorSettings) -> Float[np.ndarray, " sensor"]:
+    def _inflation(
+        self, block: ResidualBlock, settings: FaultDetectorSettings
+    ) -> Float[np.ndarray, " sensor"]:
         """Factor on the twin's variance of each sensor [-]."""
-        return np.maximum(1.0, settings.inflation * np.array(self.mean_square))
+        new = (settings.carried_factor - 1.0) * np.exp(-self.blocks / settings.carried_blocks)
+        noise = np.maximum(1.0, settings.inflation * np.array(self.mean_square))
+        return noise * (1.0 + new * block.carried)
 
     @staticmethod
     def _response(block: ResidualBlock) -> Float[np.ndarray, "sensor size"]:

@@ -57,7 +57,7 @@ class FaultDetector:
         stays where these are active.
         """
         kind, _, source = alarm.partition(".")
-        before = self.baseline.of(self.baseline.sensors, settings)
+        before = self.baseline.with_harmonics(settings)
         if kind == "net":
             baseline = before.after_net_change(settings)
         else:
@@ -119,7 +119,7 @@ class FaultDetector:
         self, active: tuple[str, ...], block: ResidualBlock, settings: FaultDetectorSettings
     ) -> Self:
         """Drop the evidence of what is not active where that, or the sensors, have changed."""
-        baseline = self.baseline.of(block.sensors, settings)
+        baseline = self.baseline.of(block, settings)
         if baseline.sensors != self.baseline.sensors:
             return replace(self, baseline=baseline, evidence={}, active=active, waited=0)
         if active == self.active:
