@@ -87,8 +87,8 @@ class FaultDetectorSettings:
         That mean square from which on it is estimated while evidence rises too, of a sensor whose
         interval was carried over: half a day of training may have shown too little of its noise.
     carried_factor, carried_blocks
-        Factor on the variance of such a sensor when it is first evaluated [-]; and the blocks
-        within which it falls to 1: half a day.
+        Factor on the variance of such a sensor when it is first evaluated [-]; and the time
+        constant, in blocks, with which it falls to 1: half a day.
     cleared_factor
         Factor on that mean square, or on its prior where that is larger, of a sensor whose alarm
         has cleared [-], so that the same noise does not raise it again and again.
