@@ -10,7 +10,7 @@ it for 48 days, over and over. The twin trains on the first 25 days (shackles on
 them); from then on all sensors live, and the fault detector and its alarms see the residuals of
 each half hour. Whatever it raises there is false, but for ``net.net`` within two weeks of a
 cleaning, which no sensor can tell from a hole. Then, from the seventh day on, a fault at a time.
-With ``--written-down`` people tell the fault detector of each cleaning, as they should.
+With ``--written-down`` people announce each cleaning to the fault detector, as they should.
 With ``--waves`` the fields have those (``_fields_in_waves``); with ``--field`` there is one cage,
 that of a field simulated in time. Fields and residuals are kept in OUT; stopped, it goes on.
 Virtual field.
@@ -67,7 +67,7 @@ def main() -> None:
     if given.field:
         BASE.append(base)
         residuals = _residuals_in_time(given)
-        _sum_up("its own water", {0: _watched(residuals, cage, told=given.written_down)})
+        _sum_up("its own water", {0: _watched(residuals, cage, written_down=given.written_down)})
         return
     for water in given.water or ("tame", "coastal"):
         score = partial(_score, water, given)
@@ -80,11 +80,11 @@ def _score(water: Water, given: argparse.Namespace, number: int) -> dict[str, An
     """What is raised on a cage of the family, once found."""
     waves = ", in waves" if given.waves else ""
     kept = given.out / f"{water}-{number}, {SCORED_FROM + given.days:g} days{waves}"
-    told = ", written down" if given.written_down else ""
-    found = kept.with_name(f"{kept.name}{told}.json")
+    announced = ", written down" if given.written_down else ""
+    found = kept.with_name(f"{kept.name}{announced}.json")
     if not found.is_file():
         residuals = _kept_residuals(kept.with_name(f"{kept.name}.npz"), water, given, number)
-        watched = _watched(residuals, BASE[0].cage, told=given.written_down)
+        watched = _watched(residuals, BASE[0].cage, written_down=given.written_down)
         found.write_text(json.dumps(watched))
     return json.loads(found.read_text())
 
@@ -173,13 +173,13 @@ def _blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
     return dict(zip(days.tolist(), residual_blocks(kept), strict=True))
 
 
-def _watched(kept: Mapping[str, np.ndarray], cage: Cage, *, told: bool) -> dict[str, Any]:
+def _watched(kept: Mapping[str, np.ndarray], cage: Cage, *, written_down: bool) -> dict[str, Any]:
     """What is raised without a fault, and the days until each fault is.
 
-    ``told``: whether the fault detector is told of cleanings.
+    ``written_down``: whether the fault detector learns of cleanings from people.
     """
     blocks, names = _blocks_of(kept), kept["sensors"].tolist()
-    cleaned = kept["cleaned"].tolist() if told else []
+    cleaned = kept["cleaned"].tolist() if written_down else []
     watch = FaultWatch.over(cage, names)
     raised, known = list[tuple[str, float]](), None
     for day, block in blocks.items():
@@ -220,7 +220,7 @@ FAULTS = {"drift": "depth", "offset": "", "nothing": "shackle"}
 def _see(
     watch: FaultWatch, day: float, block: ResidualBlock, cleaned: list[float]
 ) -> Iterator[str]:
-    """Let a block be seen, once a cleaning within it has been told."""
+    """Take a half hour in, after the announcement of a cleaning within it."""
     if any(day - SETTINGS.block_s / DAY < one <= day for one in cleaned):
         watch.detector = watch.detector.after_change("net.net", SETTINGS)
     return watch.see(_at(day), block)

@@ -14,9 +14,10 @@ from seacage.twin._settings import FaultDetectorSettings
 
 Mask = Bool[np.ndarray, " sensor"]
 
-# Of each sensor: offset, drag, and two harmonics of the offset over the current's direction
+# Of each sensor: offset, drag, and cosine and sine of the offset's first and second harmonic over
+# the current's direction
 _TERMS = 6
-_SPEED = 0.5  # at which these are in standard deviations; a tide's [m/s]
+_SPEED = 0.5  # of a tide, at which the harmonics are in standard deviations [m/s]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

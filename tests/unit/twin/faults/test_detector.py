@@ -211,7 +211,7 @@ def test_the_alarm_of_a_repaired_sensor_clears_within_two_days():
 @pytest.mark.parametrize("seed", [41, 43])
 def test_a_shackle_that_is_noisy_at_spring_tides_alarms_at_the_first_of_them_alone(seed):
     days = 20
-    spring = np.arange(days * DAY) % (5 * DAY) >= 3 * DAY
+    spring = np.arange(days * DAY) % (5 * DAY) < 2 * DAY
     more = noise(seed, days * DAY, memory=0.8, size=4.0) * only("shackle-4", 1.0)
     watch = learned().through(quiet(seed + 1, days) + spring[:, None] * more)
     assert watch.raised == ["irregular.shackle-4"]
