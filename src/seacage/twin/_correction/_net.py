@@ -24,8 +24,9 @@ EXPECTED, EXPECTED_SD, OF_DEPTH = 1.5, 0.2, (0.2, 0.5)
 
 # Standard deviations over a node's displacement [-], and those of a node that rests [m]: along the
 # current, across it, and upwards for the deepest node; those of the volume over the share of it
-# that is lost, and of the whole [-]
-ALONG, ACROSS, UPWARDS, OF_VOLUME = (0.4, 1.5), (0.3, 1.0), (0.4, 0.3), (0.5, 0.04)
+# that is lost, and of the whole [-] (decision 105)
+ALONG, ACROSS, UPWARDS, OF_VOLUME = (0.26, 1.0), (0.2, 0.65), (0.26, 0.2), (0.33, 0.03)
+LEAST_LIFT = 1.0  # of a depth sensor, over which its misfit counts [m]
 SHARED = 0.3  # of a displacement, the share that is the mean of all nodes and not the node's own
 
 
@@ -72,18 +73,39 @@ class NetCorrection:
         weight = np.exp(-0.5 * (misfit - misfit.min(axis=0)))
         return np.exp(np.sum(weight * _SIZE, axis=0) / np.sum(weight, axis=0))
 
-    def std(self, water: Metocean, net: Prediction) -> PerNode:
-        """Standard deviation of the true net about level 2, with the emulator's (x, y, z) [m]."""
+    def std(
+        self, water: Metocean, net: Prediction, depth: Float[np.ndarray, "case sensor"]
+    ) -> PerNode:
+        """Standard deviation of the true net about level 2, with the emulator's (x, y, z) [m].
+
+        Where the net misses the depths that it was fitted to, no simulation in another current is
+        the true net, and it may be off by as much of each displacement.
+
+        ``net``, ``depth``: as predicted, and of the sensors' nodes by their level 2 [m].
+        """
         moved = net.mean - self.still
         flat = np.linalg.norm(moved[..., :2], axis=2)
         flat = (1.0 - SHARED) * flat + SHARED * flat.mean(axis=1, keepdims=True)
-        depth = self.still[:, 2] / self.still[:, 2].min()  # the collar floats
-        along, across = _add_squares(ALONG, flat), _add_squares(ACROSS, flat)
+        share = self.still[:, 2] / self.still[:, 2].min()  # of the deepest: the collar floats
+        lifted = share * np.linalg.norm(moved, axis=2)
+        misfit = self._misfit(net, depth)[:, None]
+        along, across, upwards = (
+            _add_squares(one, size) + (misfit * size) ** 2
+            for one, size in ((ALONG, flat), (ACROSS, flat), (UPWARDS, lifted))
+        )
         speed = np.linalg.norm(water.current_velocity, axis=1, keepdims=True)
-        share = (water.current_velocity / np.maximum(speed, 1e-9))[:, None] ** 2
-        variance = share * along[..., None] + (1.0 - share) * across[..., None]
-        upwards = _add_squares(UPWARDS, depth * np.linalg.norm(moved, axis=2))
+        toward = (water.current_velocity / np.maximum(speed, 1e-9))[:, None] ** 2
+        variance = toward * along[..., None] + (1.0 - toward) * across[..., None]
         return np.sqrt(np.concatenate([variance, upwards[..., None]], axis=2) + net.std**2)
+
+    def _misfit(
+        self, net: Prediction, depth: Float[np.ndarray, "case sensor"]
+    ) -> Float[np.ndarray, " case"]:
+        """Root mean square by which the net misses the depths, over that of their lift [-]."""
+        nodes = np.array(self.nodes)
+        missed = np.sum((net.mean[:, nodes, 2] + depth) ** 2, axis=1)
+        lift = np.sum((depth + self.still[nodes, 2]) ** 2 + LEAST_LIFT**2, axis=1)
+        return np.sqrt(missed / lift)
 
     def _multiply(self, water: Metocean, factor: Float[np.ndarray, " case"]) -> Metocean:
         """Return the water with its current multiplied, as far as level 1 was trained."""
