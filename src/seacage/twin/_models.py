@@ -332,11 +332,9 @@ class Models:
         if water.current_change is not None and water.current_change.any():
             by_change = self._add_change(water, shape, bridle, sensor)
         bridle_in_domain, sensor_in_domain = self._own_domains(x, inside)
-        node_std = np.full_like(shape.std, np.nan)
-        if self.net is not None:
-            node_std = self.net.std(water, shape, sensor.mean[:, self._net_columns])
+        net, depth = self.net, sensor.mean[:, self._net_columns]
         volume = self.cage.volume(shape.mean) / self.still_volume
-        volume_sd = volume_std(volume) if self.net else np.full_like(volume, np.nan)
+        volume_sd = volume_std(volume) if net else np.full_like(volume, np.nan)
         return {
             "in_domain": inside,
             "bridle_in_domain": bridle_in_domain,
@@ -348,7 +346,7 @@ class Models:
             "sensor_low": sensor_low,
             "node_position": shape.mean,
             "node_sigma": shape.std.max(axis=2),
-            "node_std": node_std,
+            "node_std": net.std(water, shape, depth) if net else np.full_like(shape.std, np.nan),
             "volume_fraction": volume,
             "volume_std": np.hypot(volume_sd, by_change),
         }
