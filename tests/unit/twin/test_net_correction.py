@@ -125,13 +125,11 @@ def test_the_level_of_an_error_is_saved_with_it(tmp_path):
 def test_depths_that_no_simulation_has_widen_the_net():
     net = stand_in_twin().models.net
     assert net is not None
-    water = WATER.rows(np.linalg.norm(WATER.current_velocity, axis=1) > 0.4)
-    predicted = net.predict(
-        water, -_position(stand_in_twin().cage, water.current_velocity)[:, list(net.nodes), 2]
-    )
-    agree = -predicted.mean[:, list(net.nodes), 2]
-    lift = agree + net.still[list(net.nodes), 2]
-    uneven = agree + np.array([1.0, 0.0, -1.0][: len(net.nodes)]) * 0.5 * lift
+    water, nodes = WATER.rows(np.linalg.norm(WATER.current_velocity, axis=1) > 0.4), [*net.nodes]
+    drawn = _position(stand_in_twin().cage, water.current_velocity)
+    predicted = net.predict(water, -drawn[:, nodes, 2])
+    agree = -predicted.mean[:, nodes, 2]
+    uneven = agree + np.array([0.5, 0.0, -0.5]) * (agree + net.still[nodes, 2])
     narrow, wide = (net.std(water, predicted, depth) for depth in (agree, uneven))
     assert (wide >= narrow).all()
     moved = np.linalg.norm(predicted.mean - net.still, axis=2) > 2.0

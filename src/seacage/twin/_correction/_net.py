@@ -68,7 +68,7 @@ class NetCorrection:
         height = self.shape.mean_of_nodes(each.features(self.inputs), nodes)[:, :, 2]
         simulated = np.tensordot(_WEIGHTS, -height.reshape(len(STEPS), *depth.shape), axes=1)
         # Not level 2's own standard deviation: most of it is the current, shared by all sensors.
-        variance = _add_squares(OF_DEPTH, depth + self.still[nodes, 2])
+        variance = _add_squares(depth + self.still[nodes, 2], *OF_DEPTH)
         misfit = np.sum((simulated - depth) ** 2 / variance, axis=2)
         misfit += ((_SIZE - np.log(EXPECTED)) / EXPECTED_SD) ** 2
         weight = np.exp(-0.5 * (misfit - misfit.min(axis=0)))
@@ -88,10 +88,10 @@ class NetCorrection:
         misfit = np.sqrt(missed / lift)[:, None]
         flat = np.linalg.norm(moved[..., :2], axis=2)
         flat = (1.0 - SHARED) * flat + SHARED * flat.mean(axis=1, keepdims=True)
-        # The collar floats.
+        # The nearer to the collar, which floats, the less a node goes up and down.
         lifted = self.still[:, 2] / self.still[:, 2].min() * np.linalg.norm(moved, axis=2)
-        sizes = (ALONG, flat), (ACROSS, flat), (UPWARDS, lifted)
-        along, across, upwards = (_add_squares(one, x) + (misfit * x) ** 2 for one, x in sizes)
+        sizes = (flat, ALONG), (flat, ACROSS), (lifted, UPWARDS)
+        along, across, upwards = (_add_squares(x, *own) + (misfit * x) ** 2 for x, own in sizes)
         speed = np.linalg.norm(water.current_velocity, axis=1, keepdims=True)
         share = (water.current_velocity / np.maximum(speed, 1e-9))[:, None] ** 2
         variance = share * along[..., None] + (1.0 - share) * across[..., None]
@@ -110,8 +110,8 @@ class NetCorrection:
 
 def volume_std(fraction: PerCase) -> PerCase:
     """Standard deviation of the true volume about level 2, over that in still water [-]."""
-    return np.sqrt(_add_squares(OF_VOLUME, np.maximum(1.0 - fraction, 0.0)))
+    return np.sqrt(_add_squares(np.maximum(1.0 - fraction, 0.0), *OF_VOLUME))
 
 
-def _add_squares(share_and_rest: tuple[float, float], size: Size) -> Size:
-    return (share_and_rest[0] * size) ** 2 + share_and_rest[1] ** 2
+def _add_squares(size: Size, share: float, rest: float) -> Size:
+    return (share * size) ** 2 + rest**2
