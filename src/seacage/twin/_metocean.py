@@ -163,8 +163,11 @@ class Metocean(Rows):
         """
         ways = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
         around = self.rows(np.tile(np.arange(len(self)), len(ways)))
-        velocity = around.current_velocity + np.repeat(ways, len(self), axis=0)
-        return replace(around, current_velocity=velocity)
+        currents = around.currents.copy()
+        # At one depth, and in the mean over depth.
+        for first in (0, 2)[: currents.shape[1] // 2]:
+            currents[:, first : first + 2] += np.repeat(ways, len(self), axis=0)
+        return around.with_currents(currents)
 
     def features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
         """Features of the surrogates.

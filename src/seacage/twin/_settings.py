@@ -114,6 +114,9 @@ class FaultDetectorSettings:
         Mean and standard deviation, from sensor to sensor, of the relative loss of drag by a hole
         large enough for an alarm [-]: a hole acts on the sensors near it and on the lines that
         bear the load there. Fouling adds drag and never takes any away.
+    half_loss, half_loss_sd
+        Mean and standard deviation, from sensor to sensor, of the shift by a cleaning over that
+        by the loss of half the drag [-].
     net_change_sd
         Standard deviation of the relative change of drag by another or a cleaned net, the same at
         all sensors [-].
@@ -169,6 +172,8 @@ class FaultDetectorSettings:
     corner_stiffness: float = 0.05
     drag_loss: float = 0.25
     drag_loss_sd: float = 0.15
+    half_loss: float = 0.8
+    half_loss_sd: float = 0.4
     net_change_sd: float = 0.4
     block_weight: float = 0.6
     evidence_memory: float = 144.0

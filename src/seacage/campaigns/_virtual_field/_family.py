@@ -22,7 +22,7 @@ def draw_truth(
     Raises InputError: a number or a water that is none, or a sealed number without ``unseal``.
     """
     family = read_packaged_table("seacage.campaigns._virtual_field", "family.toml")
-    _check_number(number, family["numbers"], unseal=unseal)
+    _check_number(number, family["numbers"] | family.pop("later"), unseal=unseal)
     if water not in WATERS:
         raise InputError(f"Truth {number}: water {water!r} is none of {', '.join(WATERS)}.")
     if water != "shallow":

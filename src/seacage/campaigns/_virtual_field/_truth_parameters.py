@@ -267,7 +267,8 @@ class TruthParameters:
         number
             1 to 60 for development; 101 to 110 are sealed, so that no setting is ever fitted to
             them; 201 to 204 lie outside the ranges: another screen law, a current sheared twice,
-            an uneven frame, a sinker tube that lost its weight on one side.
+            an uneven frame, a sinker tube that lost its weight on one side; 301 to 400 are fresh,
+            for figures on cages that chose no setting.
         water
             "tame" as on the shelf, "coastal", with the shear that two ADCPs measured, or "shallow",
             as the one in the shallower water did. Of one number all have the same cage.

@@ -75,8 +75,8 @@ def virtual(
         events: A TOML file of events.
         seed: Of weather, noise and outages.
         hidden: Hidden parameters; else those shipped.
-        truth: Number of a hidden cage of the family: 1 to 60; 101 to 110, sealed; 201 to 204,
-            outside it.
+        truth: Number of a hidden cage of the family: 1 to 60, for development; 101 to 110,
+            sealed; 201 to 204, outside it; 301 to 400, fresh.
         water: Of that truth: as on the shelf, as two ADCPs measured it, or as the shallower did.
         unseal: Give a sealed truth, for a judgement that is the last.
         share: Only simulate the I-th of N shares of the hours, from 0; others do the rest.

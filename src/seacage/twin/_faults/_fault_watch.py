@@ -13,7 +13,7 @@ from seacage.twin._alarms._alarm import Action, Alarm
 from seacage.twin._alarms._lifecycle import evaluate
 from seacage.twin._alarms._policy import AlarmPolicy
 from seacage.twin._faults._detector import FaultDetector
-from seacage.twin._faults._residuals import ResidualBlock
+from seacage.twin._faults._residuals import ResidualBlock, half_drag
 from seacage.twin._faults._sensor import SensorMonitor
 from seacage.twin._settings import FaultDetectorSettings
 from seacage.twin._twin import Twin
@@ -43,8 +43,10 @@ def block_residuals(
     current = np.array([water.current_velocity[own].mean(axis=0) for own in rows.values()])
     lasts = np.array([one[-1] for one in rows.values()], dtype=int)  # rows whose waves count
     here = replace(water.rows(lasts), current_velocity=current)
-    around = twin.predict(here.joined(here, here.sides(SETTINGS.current_step))).without_nodes()
-    _, east, west, north, south = around.sensor.mean[:, columns].reshape(5, len(rows), -1)
+    sides = here.sides(SETTINGS.current_step)
+    around = twin.predict(here.joined(here, sides, half_drag(here))).without_nodes()
+    means = around.sensor.mean[:, columns].reshape(6, len(rows), -1)
+    mean, east, west, north, south, half = means
     gradient = np.stack([east - west, north - south], axis=2) / (2.0 * SETTINGS.current_step)
     return {
         "sensors": np.array(names),
@@ -55,6 +57,7 @@ def block_residuals(
         "gradient": gradient,
         "current": current,
         "tension": around.bridle_tension.mean[: len(rows)],
+        "half_drag": half - mean,
     }
 
 
@@ -71,6 +74,7 @@ def residual_blocks(found: Mapping[str, np.ndarray]) -> Iterator[ResidualBlock]:
             gradient=found["gradient"][row],
             current=found["current"][row],
             tension=found["tension"][row],
+            half_drag=found["half_drag"][row],
         )
 
 

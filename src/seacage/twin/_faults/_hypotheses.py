@@ -50,6 +50,15 @@ def hypotheses(
         if np.count_nonzero(corner[list(lines.values())]) >= 2:
             yield _bridle_fault(block, cage, lines, bridle, f"bridle.{name}", settings)
     everywhere = np.ones(len(block.sensors))
+    # Of a cleaned net: its depths change by more than their gradients say.
+    yield Hypothesis(
+        alarm="net.net",
+        variant="half",
+        scale=block.half_drag,
+        size=settings.half_loss * everywhere,
+        sd=settings.half_loss_sd * everywhere,
+        lasts=False,
+    )
     yield Hypothesis(
         alarm="net.net",
         scale=block.drag,

@@ -1,5 +1,6 @@
 """Residuals of all sensors over half an hour: reading less prediction, and how each responds."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Self
@@ -9,6 +10,7 @@ from jaxtyping import Bool, Float
 
 from seacage.twin._events import Answered
 from seacage.twin._faults._sensor import SensorMonitor
+from seacage.twin._metocean import Metocean
 from seacage.twin._twin import Twin
 
 
@@ -48,6 +50,7 @@ class ResidualBlock:
     gradient: Float[np.ndarray, "sensor 2"]
     current: Float[np.ndarray, "2"]  # at the buoy, (east, north) [m/s]
     tension: Float[np.ndarray, " line"]  # of each bridle, predicted [N]
+    half_drag: Float[np.ndarray, " sensor"]  # shift if the net lost half its drag [N] or [m]
 
     @property
     def drag(self) -> Float[np.ndarray, " sensor"]:
@@ -80,11 +83,11 @@ def close_block(
         return None
     current = np.array([sums.east, sums.north]) / sums.ticks
     here = replace(answered.metocean, current_velocity=current[None])
-    answer = twin.predict(here.joined(here, here.sides(settings.current_step)))
+    answer = twin.predict(here.joined(here, here.sides(settings.current_step), half_drag(here)))
     if not answer.valid.all():
         return None
     columns = [answer.sensor_names.index(name) for name in names]
-    _, east, west, north, south = answer.sensor.mean[:, columns]
+    mean, east, west, north, south, half = answer.sensor.mean[:, columns]
     carried = np.array([twin.models.upper[name].spread.by != "own" for name in names], dtype=bool)
     share = np.where(carried, settings.carried_share, settings.own_share)
     return ResidualBlock(
@@ -96,4 +99,10 @@ def close_block(
         gradient=np.column_stack([east - west, north - south]) / (2.0 * settings.current_step),
         current=current,
         tension=answer.bridle_tension.mean[0],
+        half_drag=half - mean,
     )
+
+
+def half_drag(water: Metocean) -> Metocean:
+    """Return the water in which the drag is half of that, as it goes with the speed's square."""
+    return water.with_currents(water.currents * math.sqrt(0.5))

@@ -49,7 +49,7 @@ def test_a_sealed_truth_is_given_only_where_it_is_unsealed() -> None:
     assert TruthParameters.of_family(103, unseal=True).title == "Truth 103, tame water."
 
 
-@pytest.mark.parametrize("number", [0, 61, 111, 205, -7])
+@pytest.mark.parametrize("number", [0, 61, 111, 205, 401, -7])
 def test_a_number_that_is_none_is_refused(number: int) -> None:
     with pytest.raises(InputError, match=rf"Truth {number} does not exist; there are 1 to 60"):
         TruthParameters.of_family(number, unseal=True)

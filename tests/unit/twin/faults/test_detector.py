@@ -49,6 +49,7 @@ def block(error, names: Iterable[str] = NAMES, *, tide: float = 1.0) -> Residual
         gradient=SLOPE,
         current=tide * NORTH,
         tension=TENSION,
+        half_drag=-0.25 * tide * SLOPE @ NORTH,
     )
 
 
@@ -94,13 +95,26 @@ class Watched:
         self.blocks = 0
 
     def through(
-        self, errors, names: Iterable[str] = NAMES, *, lost: np.ndarray | float = 0.0
+        self,
+        errors,
+        names: Iterable[str] = NAMES,
+        *,
+        lost: np.ndarray | float = 0.0,
+        halved: np.ndarray | None = None,
     ) -> "Watched":
-        """Go on through errors, and through tides in which drag is lost at each sensor."""
+        """Go on through errors, and through tides in which drag is lost at each sensor.
+
+        ``halved``: shift at full tide if half the drag were lost, which then is, and of which the
+        gradients show little.
+        """
         for error in errors:
             self.blocks += 1
             seen = block(error, names, tide=0.6 + 0.4 * np.sin(2.0 * np.pi * self.blocks / 12.4))
             seen = replace(seen, residual=seen.residual - lost * seen.drag * seen.received)
+            if halved is not None:
+                half_drag = halved * (seen.current[1] / NORTH[1]) ** 2
+                seen = replace(seen, half_drag=half_drag, residual=seen.residual + half_drag)
+                seen = replace(seen, gradient=0.15 * seen.gradient)
             self.detector = self.detector.updated(seen, ACE, self.settings, active=self.active)
             for one in self.detector.inputs(ACE, self.settings):
                 assert one.value is not None
@@ -290,6 +304,14 @@ def test_a_hole_that_some_sensors_feel_is_the_net_s_and_no_sensor_s():
     assert watch.raised == ["net.net"]
 
 
+def test_a_cleaned_net_is_the_net_s_though_depths_change_by_more_than_their_gradients_say():
+    # A net that was lifted by its fouling falls by some metres, and the gradient of its depths is
+    # small where it was lifted (truth 46 of the family).
+    fell = OWN * [30.0, 15.0, 8.0, -0.5, -0.5, -0.5, 0.0, -0.5]
+    watch = learned().through(quiet(24, 0.5)).through(quiet(25, 3.0), halved=fell)
+    assert watch.raised == ["net.net"]
+
+
 def test_a_higher_limit_raises_nothing_and_a_larger_weight_raises_sooner():
     off = quiet(3, 0.5) + only("depth-1", 8.0 * OWN[0])
     watch = learned()
@@ -359,7 +381,7 @@ def test_hypotheses_that_stay_close_raise_one_alarm_that_names_both():
 def test_evidence_starts_again_where_other_sensors_have_level_2():
     before = learned().through(quiet(33, 0.2) - only("depth-1", 1.5)).detector
     seen = block(np.zeros(8))
-    cut_off = ("received", "residual", "own_sd", "carried", "gradient")
+    cut_off = ("received", "residual", "own_sd", "carried", "gradient", "half_drag")
     four = {name: getattr(seen, name)[:4] for name in cut_off}
     fewer = replace(seen, sensors=NAMES[:4], **four)
     after = before.updated(fewer, ACE, SETTINGS, active=frozenset({"irregular.depth-1"}))
