@@ -113,15 +113,15 @@ class Answer:
     shape_level: int
     volume_fraction: Float[np.ndarray, " case"]
     volume_std: Float[np.ndarray, " case"]
-    line_names: tuple[str, ...]
-    line_kinds: tuple[str, ...]
-    line: Loads | None
+    line_names: tuple[str, ...] = ()
+    line_kinds: tuple[str, ...] = ()
+    line: Loads | None = None
     line_level: Int[np.ndarray, " mooring_line"]
     line_calibrated: Bool[np.ndarray, " mooring_line"]
     line_in_domain: Bool[np.ndarray, " case"]
     line_reason: tuple[str, ...]
     line_tp_assumed: Bool[np.ndarray, " case"]
-    node_motion: Float[np.ndarray, "case node 2"] | None
+    node_motion: Float[np.ndarray, "case node 2"] | None = None
     depth_std: Float[np.ndarray, "case depth"]
     depth_std_level: Int[np.ndarray, " depth"]
 

@@ -162,12 +162,10 @@ class Metocean(Rows):
         ``step``: of the current [m/s].
         """
         ways = step * np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]])
-        around = self.rows(np.tile(np.arange(len(self)), len(ways)))
-        currents = around.currents.copy()
-        # At one depth, and in the mean over depth.
-        for first in (0, 2)[: currents.shape[1] // 2]:
-            currents[:, first : first + 2] += np.repeat(ways, len(self), axis=0)
-        return around.with_currents(currents)
+        ways, currents = np.repeat(ways, len(self), axis=0), np.tile(self.currents, (4, 1))
+        currents[:, :2] += ways
+        currents[:, 2:4] += ways[:, : currents.shape[1] - 2]  # the mean over depth, where known
+        return self.rows(np.tile(np.arange(len(self)), 4)).with_currents(currents)
 
     def features(self, inputs: tuple[Input, ...]) -> Float[np.ndarray, "case feature"]:
         """Features of the surrogates.

@@ -229,12 +229,8 @@ class Models:
         sensors = self.cage.depth_sensors
         if self.loads is None:
             return {
-                "node_motion": None,
-                "depth_std": np.full((len(valid), len(sensors)), np.nan),
+                "depth_std": self.depth_std(water, None),
                 "depth_std_level": np.ones(len(sensors), dtype=int),
-                "line_names": (),
-                "line_kinds": (),
-                "line": None,
                 "line_level": np.zeros(0, dtype=int),
                 "line_calibrated": np.zeros(0, dtype=bool),
                 "line_in_domain": np.zeros_like(valid),

@@ -117,9 +117,9 @@ class FaultDetectorSettings:
     half_loss, half_loss_sd
         Mean and standard deviation, from sensor to sensor, of the shift by a cleaning over that
         by the loss of half the drag [-].
-    net_change_sd
+    net_change_sd, net_change_blocks
         Standard deviation of the relative change of drag by another or a cleaned net, the same at
-        all sensors [-].
+        all sensors [-]; and blocks after it in which another one is not expected: four weeks.
     block_weight
         Weight of a block's log-likelihood ratio [-], as residuals of neighbouring blocks are
         correlated.
@@ -175,6 +175,7 @@ class FaultDetectorSettings:
     half_loss: float = 0.8
     half_loss_sd: float = 0.4
     net_change_sd: float = 0.4
+    net_change_blocks: int = 1344
     block_weight: float = 0.6
     evidence_memory: float = 144.0
     active_widening: float = 3.0

@@ -139,13 +139,9 @@ class Twin:
         spread is widened, and ``in_domain`` is False.
         """
         water = metocean if isinstance(metocean, Metocean) else Metocean.of(metocean)
-        return self.models.answer(
-            water,
-            [
-                "" if one else "A number of the input is not known."
-                for one in water.known(self.models.inputs)
-            ],
-        )
+        known = water.known(self.models.inputs)
+        trouble = ["" if one else "A number of the input is not known." for one in known]
+        return self.models.answer(water, trouble)
 
     def predict_record(self, buoy: Record, *, among: Record | None = None) -> Answer:
         """Answer for each row of a buoy's record; a row that failed its checks is not valid.

@@ -91,8 +91,8 @@ def test_nothing_teaches_nothing():
 
 
 def test_a_net_with_a_discrepancy_differs_from_one_without():
-    assert net_in(erring_twin(cases=10), 0.4, 0.1).error_origin == "virtual field"
-    assert net_in(level_1_twin(), 0.4, 0.1).error_origin is None
+    assert net_in(erring_twin(cases=10), 0.4, 0.1).error.origin == "virtual field"
+    assert net_in(level_1_twin(), 0.4, 0.1).error.origin is None
 
 
 def moved(size: float) -> np.ndarray:
@@ -104,7 +104,7 @@ def moved(size: float) -> np.ndarray:
 def test_a_net_at_level_2_errs_as_nets_of_the_family_do():
     twin = stand_in_twin()
     net = net_in(twin, 0.4, 0.1)
-    assert net.error_origin == "virtual field"
+    assert net.error.origin == "virtual field"
     wall = net.expected_position[CAGE.node(4, 0)][None]
     assert 0.4 < net.clearance(wall).sigma[0] < 5.0
 

@@ -13,7 +13,7 @@ from seacage.dynamics import settle
 from seacage.ocean import over_depth
 from seacage.records import CampaignRecord, FieldRecord, Record, bin_keys
 from seacage.twin import Metocean, Training, Twin, train
-from seacage.twin._faults._residuals import half_drag
+from seacage.twin._faults._residuals import responses
 from seacage.twin._profiles import DRAWS, Profiles
 
 CAGE = Cage.named("ace").altered(mesh={"ring_depths_m": [0.0, 7.0, 15.0, 23.0], "spokes": 8})
@@ -163,9 +163,7 @@ def test_what_has_no_profile_cannot_train_one(level_1: Twin, water: Record):
 
 
 def test_a_little_more_current_is_felt_where_the_profile_is_known(level_1: Twin, water: Record):
-    here = Metocean.of_record(water).rows(np.array([5]))
-    east, west, north, south = level_1.predict(here.sides(0.03)).sensor.mean
-    halved = level_1.predict(half_drag(here)).sensor.mean[0]
-    depths = slice(len(CAGE.depth_sensors))
-    assert np.all(np.hypot(east - west, north - south)[depths] > 0.1)
-    assert np.all(halved[depths] > level_1.predict(here).sensor.mean[0, depths])
+    depths = [one.name for one in CAGE.depth_sensors]
+    found = responses(level_1, depths, Metocean.of_record(water).rows(np.array([5, 7])))
+    assert np.all(np.linalg.norm(found["gradient"], axis=2) > 1.0)
+    assert np.all(found["half_drag"] > 0.1)

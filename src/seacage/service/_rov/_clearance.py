@@ -120,7 +120,7 @@ def _about(net: PredictedNet, frame: schemas.FrameName, below: float) -> dict[st
         "frame": frame,
         "in_domain": net.in_domain,
         "state_age_s": round(net.age_s, 3),
-        "shape_error": None if net.error_origin is None else str(net.error_origin),
+        "shape_error": None if net.error.origin is None else str(net.error.origin),
         "unlike": net.unlike,
         "below_m": below,
     }
@@ -128,7 +128,7 @@ def _about(net: PredictedNet, frame: schemas.FrameName, below: float) -> dict[st
 
 def _none_where_unknown(net: PredictedNet, values: Float[np.ndarray, " point"]) -> list[Any]:
     """Say what rests on the shape's error; nothing where that is not known."""
-    return [None] * len(values) if net.error_origin is None else _round(values)
+    return [None] * len(values) if net.error.origin is None else _round(values)
 
 
 def _round(values: Float[np.ndarray, "point *rest"]) -> list[Any]:

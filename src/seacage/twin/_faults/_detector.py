@@ -34,6 +34,7 @@ class FaultDetector:
     evidence: EvidenceByName = field(default_factory=dict[str, Evidence])
     active: tuple[str, ...] = ()  # the alarms that were raised at the last block
     waited: int = 0  # blocks for which some evidence has been beyond the limit without an alarm
+    changed: int = 0  # blocks for which a change of the net that people announced still counts
 
     __pydantic_config__ = json_keys(
         monitors="senses", sums="opened", baseline="usual", evidence="beliefs", active="told"
@@ -59,13 +60,13 @@ class FaultDetector:
         kind, _, source = alarm.partition(".")
         before = self.baseline.with_harmonics(settings)
         if kind == "net":
-            baseline = before.after_net_change(settings)
+            baseline, changed = before.after_net_change(settings), settings.net_change_blocks
         else:
-            baseline = before.after_move(source, settings)
+            baseline, changed = before.after_move(source, settings), self.changed
         kept = {*self.active} - {alarm}
         evidence = {name: one for name, one in self.evidence.items() if _alarm_of(name) in kept}
         after = self.interrupted()
-        return replace(after, baseline=baseline, evidence=evidence, waited=0)
+        return replace(after, baseline=baseline, evidence=evidence, waited=0, changed=changed)
 
     def stepped(
         self,
@@ -102,7 +103,7 @@ class FaultDetector:
         """Return a copy with the evidence of one more block for all hypotheses."""
         ours = tuple(sorted(name for name in active if name.partition(".")[0] in _KINDS))
         before = self._beside(ours, block, settings)
-        among = list(hypotheses(block, cage, settings))
+        among = list(hypotheses(block, cage, settings, net_changed=self.changed > 0))
         evidence = update_evidence(before.evidence, block, before.baseline, among, ours, settings)
         after = replace(before, evidence=_limit(evidence, ours, settings))
         best = max((value for _, value in after.ranking()), default=0.0)
@@ -113,7 +114,7 @@ class FaultDetector:
             noisy &= [f"irregular.{name}" not in ours for name in block.sensors]
         baseline = before.baseline.updated(block, shifts, settings, noise_of=noisy)
         waited = before.waited + 1 if best >= settings.limit else 0
-        return replace(after, baseline=baseline, waited=waited)
+        return replace(after, baseline=baseline, waited=waited, changed=max(self.changed - 1, 0))
 
     def _beside(
         self, active: tuple[str, ...], block: ResidualBlock, settings: FaultDetectorSettings
@@ -177,8 +178,7 @@ class FaultDetector:
         cusum = self.cusums().get(name, 0.0)
         value, detail = cusum / settings.limit, self._detail(name)
         if name not in self.active:
-            others = (one for one in self.ranking() if one[0] != name)
-            second, next_best = next(others, ("", 0.0))
+            second, next_best = next((one for one in self.ranking() if one[0] != name), ("", 0.0))
             lead = (cusum - next_best) / settings.lead
             best = cusum >= max(settings.limit, next_best)
             if lead < 1.0 and best and self.waited >= settings.lead_blocks:

@@ -13,13 +13,14 @@ from seacage.twin._alarms._alarm import Action, Alarm
 from seacage.twin._alarms._lifecycle import evaluate
 from seacage.twin._alarms._policy import AlarmPolicy
 from seacage.twin._faults._detector import FaultDetector
-from seacage.twin._faults._residuals import ResidualBlock, half_drag
+from seacage.twin._faults._residuals import ResidualBlock, responses
 from seacage.twin._faults._sensor import SensorMonitor
 from seacage.twin._settings import FaultDetectorSettings
 from seacage.twin._twin import Twin
 
 SETTINGS = FaultDetectorSettings()
 POLICY = AlarmPolicy.default()
+OF_A_BLOCK = "residual", "gradient", "current", "tension", "half_drag"
 
 
 def block_residuals(
@@ -43,21 +44,12 @@ def block_residuals(
     current = np.array([water.current_velocity[own].mean(axis=0) for own in rows.values()])
     lasts = np.array([one[-1] for one in rows.values()], dtype=int)  # rows whose waves count
     here = replace(water.rows(lasts), current_velocity=current)
-    sides = here.sides(SETTINGS.current_step)
-    around = twin.predict(here.joined(here, sides, half_drag(here))).without_nodes()
-    means = around.sensor.mean[:, columns].reshape(6, len(rows), -1)
-    mean, east, west, north, south, half = means
-    gradient = np.stack([east - west, north - south], axis=2) / (2.0 * SETTINGS.current_step)
-    return {
+    return responses(twin, names, here) | {
         "sensors": np.array(names),
         "number": np.array(list(rows)),
         "residual": np.array([error[inside].mean(axis=0) for inside in rows.values()]),
-        "std": around.sensor.std[: len(rows), columns],
         "own": np.array([twin.models.upper[name].spread.by == "own" for name in names]),
-        "gradient": gradient,
         "current": current,
-        "tension": around.bridle_tension.mean[: len(rows)],
-        "half_drag": half - mean,
     }
 
 
@@ -68,13 +60,9 @@ def residual_blocks(found: Mapping[str, np.ndarray]) -> Iterator[ResidualBlock]:
         yield ResidualBlock(
             sensors=tuple(found["sensors"].tolist()),
             received=np.ones(len(share), dtype=bool),
-            residual=found["residual"][row],
             own_sd=found["std"][row] * share,
             carried=~found["own"],
-            gradient=found["gradient"][row],
-            current=found["current"][row],
-            tension=found["tension"][row],
-            half_drag=found["half_drag"][row],
+            **{name: found[name][row] for name in OF_A_BLOCK},
         )
 
 

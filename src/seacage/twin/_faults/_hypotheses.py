@@ -34,9 +34,12 @@ class Hypothesis:
 
 
 def hypotheses(
-    block: ResidualBlock, cage: Cage, settings: FaultDetectorSettings
+    block: ResidualBlock, cage: Cage, settings: FaultDetectorSettings, *, net_changed: bool = False
 ) -> Iterator[Hypothesis]:
-    """List the hypotheses: of each alarm the one with the widest prior first."""
+    """List the hypotheses: of each alarm the one with the widest prior first.
+
+    ``net_changed``: whether people have said that the net was cleaned or changed.
+    """
     lines = {
         block.sensors.index(one.name): one.bridle
         for one in cage.shackles
@@ -49,22 +52,18 @@ def hypotheses(
         corner = cage.bridle_corner == cage.bridle_corner[bridle]
         if np.count_nonzero(corner[list(lines.values())]) >= 2:
             yield _bridle_fault(block, cage, lines, bridle, f"bridle.{name}", settings)
-    everywhere = np.ones(len(block.sensors))
     # Of a cleaned net: its depths change by more than their gradients say.
-    yield Hypothesis(
-        alarm="net.net",
-        variant="half",
-        scale=block.half_drag,
-        size=settings.half_loss * everywhere,
-        sd=settings.half_loss_sd * everywhere,
-        lasts=False,
-    )
-    yield Hypothesis(
-        alarm="net.net",
-        scale=block.drag,
-        size=-settings.drag_loss * everywhere,
-        sd=settings.drag_loss_sd * everywhere,
-    )
+    half = "half", block.half_drag, settings.half_loss, settings.half_loss_sd
+    hole = "", block.drag, -settings.drag_loss, settings.drag_loss_sd
+    for variant, scale, size, sd in [hole] if net_changed else [half, hole]:
+        yield Hypothesis(
+            alarm="net.net",
+            variant=variant,
+            scale=scale,
+            size=np.full_like(scale, size),
+            sd=np.full_like(scale, sd),
+            lasts=not variant,
+        )
 
 
 def _sensor_faults(

@@ -1,7 +1,7 @@
 """Residuals of all sensors over half an hour: reading less prediction, and how each responds."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -77,32 +77,42 @@ def close_block(
         [one.count >= settings.least_readings and not one.is_stuck(settings) for one in each],
         dtype=bool,
     )
-    if np.count_nonzero(received) < settings.least_sensors:
-        return None
-    if sums.ticks == 0 or answered.metocean is None:
+    few = np.count_nonzero(received) < settings.least_sensors
+    if few or sums.ticks == 0 or answered.metocean is None:
         return None
     current = np.array([sums.east, sums.north]) / sums.ticks
     here = replace(answered.metocean, current_velocity=current[None])
-    answer = twin.predict(here.joined(here, here.sides(settings.current_step), half_drag(here)))
-    if not answer.valid.all():
+    found = responses(twin, names, here)
+    if not np.isfinite(found["std"]).all():
         return None
-    columns = [answer.sensor_names.index(name) for name in names]
-    mean, east, west, north, south, half = answer.sensor.mean[:, columns]
     carried = np.array([twin.models.upper[name].spread.by != "own" for name in names], dtype=bool)
     share = np.where(carried, settings.carried_share, settings.own_share)
     return ResidualBlock(
         sensors=names,
         received=received,
         residual=np.array([one.error / max(one.count, 1) for one in each]) * received,
-        own_sd=answer.sensor.std[0, columns] * share,
+        own_sd=found.pop("std")[0] * share,
         carried=carried,
-        gradient=np.column_stack([east - west, north - south]) / (2.0 * settings.current_step),
         current=current,
-        tension=answer.bridle_tension.mean[0],
-        half_drag=half - mean,
+        **{name: one[0] for name, one in found.items()},
     )
 
 
-def half_drag(water: Metocean) -> Metocean:
-    """Return the water in which the drag is half of that, as it goes with the speed's square."""
-    return water.with_currents(water.currents * math.sqrt(0.5))
+def responses(twin: Twin, sensors: Sequence[str], water: Metocean) -> dict[str, np.ndarray]:
+    """Predict in each row of water what ``ResidualBlock`` has of these sensors; NaN if not known.
+
+    ``std`` is that of the residual.
+    """
+    columns = [twin.sensor_names.index(name) for name in sensors]
+    step = twin.fault_detector.current_step
+    # Drag goes with the square of the speed.
+    halved = water.with_currents(water.currents * math.sqrt(0.5))
+    answer = twin.predict(water.joined(water, water.sides(step), halved)).without_nodes()
+    means = answer.sensor.mean[:, columns].reshape(6, len(water), -1)
+    mean, east, west, north, south, half = means
+    return {
+        "std": answer.sensor.std[: len(water), columns],
+        "gradient": np.stack([east - west, north - south], axis=2) / (2.0 * step),
+        "tension": answer.bridle_tension.mean[: len(water)],
+        "half_drag": half - mean,
+    }

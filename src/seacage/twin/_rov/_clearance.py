@@ -24,7 +24,7 @@ class Clearance(Rows):
     # error; negative where that net lies beyond the point [m]
     expected: Float[np.ndarray, " point"]
     # Standard deviation of that distance, across the net [m]. Where the twin has no discrepancy
-    # (``PredictedNet.error_origin`` is None) it is the emulator's own, about the simulations, and
+    # (``PredictedNet.error.origin`` is None) it is the emulator's own, about the simulations, and
     # the probabilities below are no statement about the true net.
     sigma: Float[np.ndarray, " point"]
     below: float  # distance of ``p_below`` [m]

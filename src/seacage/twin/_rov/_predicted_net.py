@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import Cage, Nearest
-from seacage.conventions import InputError, Origin, SeacageError, duration_text
+from seacage.conventions import InputError, SeacageError, duration_text
 from seacage.ocean import SeaState
 from seacage.twin._answer import Answer
 from seacage.twin._discrepancy import ShapeError
@@ -52,8 +52,6 @@ class PredictedNet:
     node_position: Float[np.ndarray, "node 3"]  # as predicted [m]
     node_sigma: Float[np.ndarray, " node"]  # standard deviation of the surrogate [m]
     error: ShapeError  # distribution of the prediction's error, beyond the surrogate's
-    # Origin of the true shapes behind ``error``; None where there are none
-    error_origin: Origin | None
     # Sentence where the cage is unlike those of the family; "" where it is not, or not known
     unlike: str = ""
     # The time of the prediction, and the age of the reading it rests on [s]
@@ -78,8 +76,7 @@ class PredictedNet:
         ``allow_stale``: accept the last sound reading however old it is.
         ``most_age_s``: refuse a reading older than this [s]; None for the twin's own timeout.
         """
-        answer, age_s = answered.answer, answered.input_age_s
-        water = answered.metocean
+        answer, water, age_s = answered.answer, answered.metocean, answered.input_age_s
         if water is None or age_s is None or not water.known(twin.models.inputs).all():
             raise StaleError(f"There is no net to measure from. {answer.reason[0]}")
         if not answer.valid[0]:
@@ -98,13 +95,11 @@ class PredictedNet:
         known = twin.discrepancy
         if known is not None and known.level < answer.shape_level:
             answer = twin.models.level_1.answer(water, [""])
-        error = _error_of(twin, answer, water.current_velocity[0])
         return cls(
             cage=twin.cage,
             node_position=answer.node_position[0],
             node_sigma=answer.node_sigma[0],
-            error=error,
-            error_origin=error.origin,
+            error=_error_of(twin, answer, water.current_velocity[0]),
             unlike=twin.unlike,
             t=answered.t,
             age_s=age_s,
