@@ -677,6 +677,10 @@ export default {
       title: "Twin no longer fits",
       message: "Readings of {sensors} miss the twin's intervals so often that these are widened {factor} times: the cage, or a sensor, has changed since training. Train the twin anew.",
     },
+    unlike: {
+      title: "Unlike other cages",
+      message: "This cage is unlike those that widths without a sensor come from: net, volume and lines without a sensor may be off by more than their intervals say.",
+    },
     measured_none: {
       title: "Nothing measured",
       message: "No sensor has given a valid reading within its timeout: all is predicted.",

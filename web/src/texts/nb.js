@@ -674,6 +674,10 @@ export default {
       title: "Tvillingen passer ikke lenger",
       message: "Målingene fra {sensors} faller så ofte utenfor tvillingens intervaller at disse er gjort {factor} ganger så brede: Merden eller en sensor har endret seg siden treningen. Tren tvillingen på nytt.",
     },
+    unlike: {
+      title: "Ulik andre merder",
+      message: "Merden er ulik dem som bredden av intervaller uten sensor kommer fra: Not, volum og liner uten sensor kan avvike mer enn intervallene sier.",
+    },
     measured_none: {
       title: "Ingenting målt",
       message: "Ingen sensor har gitt en gyldig måling innen tidsfristen: Alt er beregnet.",

@@ -164,8 +164,8 @@ class LiveCage:
         """Say what the cage does at one time, and what of it is not well."""
         past, damage = past or self.past, self.live.damage.at(answered.t)
         state = state_of(self.name, past.twin, answered, memory, damage=damage)
-        policy, least = self.desk.policy, self._least_volume
-        concerns = concerns_of(state, memory, policy=policy, least_volume=least)
+        limits = {"policy": self.desk.policy, "least_volume": self._least_volume}
+        concerns = concerns_of(state, memory, **limits, unlike=past.twin.unlike != "")
         also = {"twin": past.id, "alarms": list(alarms), "concerns": list(concerns)}
         return state.model_copy(update=also)
 

@@ -14,7 +14,7 @@ _TEXTS: dict[str, dict[str, str]] = read_packaged_table("seacage.service._live",
 
 
 def concerns_of(
-    state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float
+    state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float, unlike: bool
 ) -> Iterator[Concern]:
     """Say what of a cage is beyond its limits, or not measured; the gravest comes first."""
     limits = {one.name: policy.limit(f"load.{one.name}").raise_at for one in state.bridles}
@@ -30,6 +30,8 @@ def concerns_of(
     factor = {name: one.factor for name, one in memory.tracked.items() if name in names}
     if wide := sorted(name for name in factor.keys() - memory.silent if factor[name] >= WIDEST):
         yield _concern("fit", sensors=wide, factor=max(factor[name] for name in wide))
+    if unlike and state.valid:
+        yield _concern("unlike")
     measured = {name for name in names if _is_measured(memory, state, name, policy)}
     if not measured:
         yield _concern("measured_none")
@@ -39,9 +41,8 @@ def concerns_of(
 
 def _concern(key: str, **values: SentenceValue) -> Concern:
     written = {name: fill_sentence(text, values) for name, text in _TEXTS[key].items()}
-    return Concern.model_validate(
-        {"kind": key.partition("_")[0], "key": key, "values": values, **written}
-    )
+    about = {"kind": key.partition("_")[0], "key": key, "values": values}
+    return Concern.model_validate(about | written)
 
 
 def _is_measured(memory: TwinState, state: State, sensor: str, policy: AlarmPolicy) -> bool:

@@ -153,7 +153,7 @@ class Concern(AbstractAnswer):
     ``key`` and ``values`` are as for an alarm, of title and message.
     """
 
-    kind: Literal["load", "volume", "fit", "measured"]
+    kind: Literal["load", "volume", "fit", "unlike", "measured"]
     title: str
     message: str
     key: str = ""

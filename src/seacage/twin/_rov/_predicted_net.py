@@ -115,8 +115,7 @@ class PredictedNet:
         ``t``: to give the net.
         """
         row = Metocean.of(water) if isinstance(water, SeaState) else water
-        answered = Answered(t=t, answer=twin.predict(row), metocean=row, input_age_s=0.0)
-        return cls.of(twin, answered)
+        return cls.of(twin, Answered(t=t, answer=twin.predict(row), metocean=row, input_age_s=0.0))
 
     @property
     def expected_position(self) -> Float[np.ndarray, "node 3"]:

@@ -30,7 +30,7 @@ def depth(minutes: float, metres: float) -> Sample:
     return Sample(stream="depth-2", t=at(minutes), values={"depth_m": metres})
 
 
-def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0):
+def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0, unlike: bool = False):
     """State and concerns of a cage that has received samples, in a current of 0.5 m/s."""
     twin = stand_in_twin()
     memory = twin.start()
@@ -40,7 +40,7 @@ def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0):
     answered = next(event for event in reversed(events) if isinstance(event, Answered))
     state = state_of("ace", twin, answered, memory)
     policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
-    found = concerns_of(state, memory, policy=policy, least_volume=least_volume)
+    found = concerns_of(state, memory, policy=policy, least_volume=least_volume, unlike=unlike)
     return state, {one.kind: one for one in found}
 
 
@@ -110,6 +110,15 @@ def test_one_bad_reading_after_a_good_one_is_no_concern():
     assert seen(depth(0, 14.2), bad, minutes=6)[1] == {}
 
 
+def test_a_cage_unlike_those_of_the_family_is_a_concern_where_it_has_intervals():
+    concern = seen(depth(0, 14.2), unlike=True)[1]["unlike"]
+    assert concern.title == "Unlike other cages"
+    assert "may be off by more than their intervals say" in concern.message
+    state, concerns = seen(depth(0, 14.2), minutes=600, unlike=True)
+    assert not state.valid
+    assert "unlike" not in concerns
+
+
 def fitting(factors: dict[str, float], *, silent: frozenset[str] = frozenset()):
     """Concerns of a healthy cage whose sensors' intervals are widened by factors."""
     state, _ = seen(depth(0, 14.2))
@@ -120,7 +129,7 @@ def fitting(factors: dict[str, float], *, silent: frozenset[str] = frozenset()):
     tracked = {name: Tracked(factor=factor) for name, factor in factors.items()}
     memory = replace(memory, tracked=tracked, silent=silent)
     policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
-    found = concerns_of(state, memory, policy=policy, least_volume=0.0)
+    found = concerns_of(state, memory, policy=policy, least_volume=0.0, unlike=False)
     return {one.kind: one for one in found}
 
 
@@ -155,5 +164,8 @@ def test_a_net_that_hangs_higher_than_in_training_no_longer_fits_within_a_day(ri
     answered = next(event for event in reversed(events) if isinstance(event, Answered))
     policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
     state = state_of("ace", twin, answered, memory)
-    found = [one.kind for one in concerns_of(state, memory, policy=policy, least_volume=0.0)]
+    found = [
+        one.kind
+        for one in concerns_of(state, memory, policy=policy, least_volume=0.0, unlike=False)
+    ]
     assert ("fit" not in found) == fits
