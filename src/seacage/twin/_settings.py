@@ -179,7 +179,7 @@ class FaultDetectorSettings:
     block_weight: float = 0.6
     evidence_memory: float = 144.0
     active_widening: float = 3.0
-    limit: float = 30.0
+    limit: float = 28.0
     lead: float = 10.0
     lead_blocks: int = 48
     most_limits: float = 2.0
