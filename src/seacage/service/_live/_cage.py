@@ -164,8 +164,8 @@ class LiveCage:
         """Say what the cage does at one time, and what of it is not well."""
         past, damage = past or self.past, self.live.damage.at(answered.t)
         state = state_of(self.name, past.twin, answered, memory, damage=damage)
-        limits = {"policy": self.desk.policy, "least_volume": self._least_volume}
-        concerns = concerns_of(state, memory, **limits, unlike=past.twin.unlike != "")
+        policy, least, unlike = self.desk.policy, self._least_volume, past.twin.unlike
+        concerns = concerns_of(state, memory, policy=policy, least_volume=least, unlike=unlike)
         also = {"twin": past.id, "alarms": list(alarms), "concerns": list(concerns)}
         return state.model_copy(update=also)
 

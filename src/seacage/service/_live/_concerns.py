@@ -14,7 +14,7 @@ _TEXTS: dict[str, dict[str, str]] = read_packaged_table("seacage.service._live",
 
 
 def concerns_of(
-    state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float, unlike: bool
+    state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float, unlike: str
 ) -> Iterator[Concern]:
     """Say what of a cage is beyond its limits, or not measured; the gravest comes first."""
     limits = {one.name: policy.limit(f"load.{one.name}").raise_at for one in state.bridles}

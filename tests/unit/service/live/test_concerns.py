@@ -30,7 +30,7 @@ def depth(minutes: float, metres: float) -> Sample:
     return Sample(stream="depth-2", t=at(minutes), values={"depth_m": metres})
 
 
-def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0, unlike: bool = False):
+def seen(*samples: Sample, minutes: float = 0.0, least_volume: float = 0.0, unlike: str = ""):
     """State and concerns of a cage that has received samples, in a current of 0.5 m/s."""
     twin = stand_in_twin()
     memory = twin.start()
@@ -111,10 +111,10 @@ def test_one_bad_reading_after_a_good_one_is_no_concern():
 
 
 def test_a_cage_unlike_those_of_the_family_is_a_concern_where_it_has_intervals():
-    concern = seen(depth(0, 14.2), unlike=True)[1]["unlike"]
+    concern = seen(depth(0, 14.2), unlike="It differs.")[1]["unlike"]
     assert concern.title == "Unlike other cages"
     assert "may be off by more than their intervals say" in concern.message
-    state, concerns = seen(depth(0, 14.2), minutes=600, unlike=True)
+    state, concerns = seen(depth(0, 14.2), minutes=600, unlike="It differs.")
     assert not state.valid
     assert "unlike" not in concerns
 
@@ -129,7 +129,7 @@ def fitting(factors: dict[str, float], *, silent: frozenset[str] = frozenset()):
     tracked = {name: Tracked(factor=factor) for name, factor in factors.items()}
     memory = replace(memory, tracked=tracked, silent=silent)
     policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
-    found = concerns_of(state, memory, policy=policy, least_volume=0.0, unlike=False)
+    found = concerns_of(state, memory, policy=policy, least_volume=0.0, unlike="")
     return {one.kind: one for one in found}
 
 
@@ -165,7 +165,6 @@ def test_a_net_that_hangs_higher_than_in_training_no_longer_fits_within_a_day(ri
     policy = AlarmPolicy.default(twin.cage, buoy=twin.buoy, timeouts=twin.timeouts)
     state = state_of("ace", twin, answered, memory)
     found = [
-        one.kind
-        for one in concerns_of(state, memory, policy=policy, least_volume=0.0, unlike=False)
+        one.kind for one in concerns_of(state, memory, policy=policy, least_volume=0.0, unlike="")
     ]
     assert ("fit" not in found) == fits
