@@ -679,7 +679,7 @@ export default {
     },
     unlike: {
       title: "Unlike other cages",
-      message: "This cage is unlike those that widths without a sensor come from: net, volume and lines without a sensor may be off by more than their intervals say.",
+      message: "What no sensor measures may be off by more than its interval says: this cage is unlike those that its width was learned on.",
     },
     measured_none: {
       title: "Nothing measured",

@@ -676,7 +676,7 @@ export default {
     },
     unlike: {
       title: "Ulik andre merder",
-      message: "Merden er ulik dem som bredden av intervaller uten sensor kommer fra: Not, volum og liner uten sensor kan avvike mer enn intervallene sier.",
+      message: "Det ingen sensor måler, kan avvike mer enn intervallet sier: Merden er ulik dem som bredden er lært av.",
     },
     measured_none: {
       title: "Ingenting målt",

@@ -113,7 +113,7 @@ def test_one_bad_reading_after_a_good_one_is_no_concern():
 def test_a_cage_unlike_those_of_the_family_is_a_concern_where_it_has_intervals():
     concern = seen(depth(0, 14.2), unlike="It differs.")[1]["unlike"]
     assert concern.title == "Unlike other cages"
-    assert "may be off by more than their intervals say" in concern.message
+    assert "may be off by more than its interval says" in concern.message
     state, concerns = seen(depth(0, 14.2), minutes=600, unlike="It differs.")
     assert not state.valid
     assert "unlike" not in concerns
