@@ -108,8 +108,7 @@ def responses(twin: Twin, sensors: Sequence[str], water: Metocean) -> dict[str, 
     # Drag goes with the square of the speed.
     halved = water.with_currents(water.currents * math.sqrt(0.5))
     answer = twin.predict(water.joined(water, water.sides(step), halved)).without_nodes()
-    means = answer.sensor.mean[:, columns].reshape(6, len(water), -1)
-    mean, east, west, north, south, half = means
+    mean, east, west, north, south, half = answer.sensor.mean[:, columns].reshape(6, len(water), -1)
     return {
         "std": answer.sensor.std[: len(water), columns],
         "gradient": np.stack([east - west, north - south], axis=2) / (2.0 * step),
