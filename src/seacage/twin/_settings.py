@@ -114,10 +114,9 @@ class FaultDetectorSettings:
         Mean and standard deviation, from sensor to sensor, of the relative loss of drag by a hole
         large enough for an alarm [-]: a hole acts on the sensors near it and on the lines that
         bear the load there. Fouling adds drag and never takes any away.
-    half_loss, half_loss_sd, half_loss_walk
+    half_loss, half_loss_sd
         Mean and standard deviation, from sensor to sensor, of the shift by a cleaning over that
-        by the loss of half the drag [-]; and that of its change from block to block, as it turns
-        with the current and ends as the net grows.
+        by the loss of half the drag [-].
     net_change_sd, net_change_blocks
         Standard deviation of the relative change of drag by another or a cleaned net, the same at
         all sensors [-]; and blocks after it in which another one is not expected: four weeks.
@@ -175,7 +174,6 @@ class FaultDetectorSettings:
     drag_loss_sd: float = 0.15
     half_loss: float = 0.8
     half_loss_sd: float = 0.4
-    half_loss_walk: float = 0.1
     net_change_sd: float = 0.4
     net_change_blocks: int = 1344
     block_weight: float = 0.6

@@ -109,7 +109,8 @@ class FaultDetector:
         best = max((value for _, value in after.ranking()), default=0.0)
         shifts = shifts_of_active(evidence, among, ours, settings).values()
         noisy = None  # all is updated where there is little evidence of a fault
-        if best >= settings.calm * settings.limit:
+        # Nor while the net has lost drag: what grows back would be taken for the usual.
+        if "net.net" in ours or best >= settings.calm * settings.limit:
             noisy = before.baseline.noisy(block, settings)
             noisy &= [f"irregular.{name}" not in ours for name in block.sensors]
         baseline = before.baseline.updated(block, shifts, settings, noise_of=noisy)

@@ -62,7 +62,7 @@ def hypotheses(
             scale=scale,
             size=np.full_like(scale, size),
             sd=np.full_like(scale, sd),
-            walk=settings.half_loss_walk if variant else 0.0,
+            lasts=not variant,
         )
 
 
