@@ -310,6 +310,7 @@ def test_a_cleaned_net_is_the_net_s_though_depths_change_by_more_than_their_grad
     fell = OWN * [30.0, 15.0, 8.0, -0.5, -0.5, -0.5, 0.0, -0.5]
     watch = learned().through(quiet(24, 0.5)).through(quiet(25, 3.0), halved=fell)
     assert watch.raised == ["net.net"]
+    assert watch.through(quiet(26, 6.0)).active == set()
     watch = learned()
     watch.detector = watch.detector.after_change("net.net", SETTINGS)
     assert "net.net" not in watch.through(quiet(25, 3.0), halved=fell).raised
