@@ -16,7 +16,10 @@ _TEXTS: dict[str, dict[str, str]] = read_packaged_table("seacage.service._live",
 def concerns_of(
     state: State, memory: TwinState, *, policy: AlarmPolicy, least_volume: float, unlike: str
 ) -> Iterator[Concern]:
-    """Say what of a cage is beyond its limits, or not measured; the gravest comes first."""
+    """Say what of a cage is beyond its limits, or not measured; the gravest comes first.
+
+    ``unlike``: why the cage is unlike those of the family; "" where it is not.
+    """
     limits = {one.name: policy.limit(f"load.{one.name}").raise_at for one in state.bridles}
     shares = [(share - limits[name], share, name, by) for share, name, by in loads_of(state)]
     over, share, line, shackle = max(shares, default=(-1.0, 0.0, "", ""))

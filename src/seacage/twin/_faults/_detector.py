@@ -108,8 +108,9 @@ class FaultDetector:
         after = replace(before, evidence=_limit(evidence, ours, settings))
         best = max((value for _, value in after.ranking()), default=0.0)
         shifts = shifts_of_active(evidence, among, ours, settings).values()
-        noisy = None  # all is updated where there is little evidence of a fault
-        # Nor while the net has lost drag: what grows back would be taken for the usual.
+        # All is updated where there is little evidence of a fault, but not while the net has lost
+        # drag: what grows back would be taken for the usual.
+        noisy = None
         if "net.net" in ours or best >= settings.calm * settings.limit:
             noisy = before.baseline.noisy(block, settings)
             noisy &= [f"irregular.{name}" not in ours for name in block.sensors]

@@ -20,6 +20,7 @@ from seacage.twin._twin import Twin
 
 SETTINGS = FaultDetectorSettings()
 POLICY = AlarmPolicy.default()
+# Arrays that a block has row by row, as they are
 OF_A_BLOCK = "residual", "gradient", "current", "tension", "half_drag"
 
 
