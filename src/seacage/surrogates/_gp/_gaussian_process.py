@@ -36,10 +36,10 @@ Answer = tuple[Float[np.ndarray, "_ _"], Float[np.ndarray, "_ _"]]
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """Times of cases whose noise is correlated, as shares of their whole time."""
+    """Times of cases whose noise is correlated, in mean steps from one case to the next."""
 
     begin: float = 0.0  # of the first case [s]
-    length: float = 0.0  # from the first to the last [s]; 0 where cases have no times
+    step: float = 0.0  # the whole time over the number of cases [s]; 0 where cases have no times
 
     @classmethod
     def of(cls, time: Times, noise: NoiseName) -> Self:
@@ -52,18 +52,18 @@ class Clock:
                 f"{np.max(time):g} s. Noise that is correlated in time takes noise='white' and "
                 "cases of several times, all finite."
             )
-        return cls(float(np.min(time)), float(np.ptp(time)))
+        return cls(float(np.min(time)), float(np.ptp(time)) / len(time))
 
     def standardise(self, time: Times, rows: int, *, what: str) -> Float[np.ndarray, " row"]:
         """Zeros where cases have no times. Raises InputError: some are missing, or not finite."""
-        if not self.length:
+        if not self.step:
             return np.zeros(rows)
         if time is None or np.shape(time) != (rows,) or not np.isfinite(time).all():
             raise InputError(
                 f"{what}: the noise is correlated in time, so each of the {rows} cases needs its "
                 "time [s], a finite number."
             )
-        return (time - self.begin) / self.length
+        return (time - self.begin) / self.step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -350,7 +350,7 @@ class FittedGaussianProcess:
         if len(set(kernels)) > 1:
             arrays["factor"] = self.factor
         if first.noise.name == CORRELATED:
-            arrays |= {"time": first.time, "clock": np.array([self.clock.begin, self.clock.length])}
+            arrays |= {"time": first.time, "clock": np.array([self.clock.begin, self.clock.step])}
         anchor = first.noise.anchor
         return settings, arrays | ({"anchor": anchor} if anchor.size else {})
 

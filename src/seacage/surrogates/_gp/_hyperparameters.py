@@ -50,7 +50,7 @@ class Evidence(Rows):
     x: Float[np.ndarray, "n feature"]
     y: Float[np.ndarray, "n output"]
     noise_factor: Float[np.ndarray, " n"]  # factor on each point's noise
-    time: Float[np.ndarray, " n"]  # of each point, from 0 to 1, where its noise is correlated
+    time: Float[np.ndarray, " n"]  # of each point, in mean steps, where its noise is correlated
     prior: Prior  # of all hyperparameters
 
     @classmethod

@@ -26,10 +26,10 @@ NOISE_BOUNDS = (math.log(1e-6), math.log(10.0))
 FREEDOM = 4.0  # degrees of freedom of Student's t: outliers are common, and the variance exists
 SETTLING = 50  # steps of the fixed-point iteration for a case's noise factor
 ANCHORS = 20  # places that noise by input is learned at, at most
-# Of the part that lasts in time, of cases that are thus measured; and its log memory, in shares of
-# the time of all cases
+# Of the part that lasts in time, of cases that are thus measured; and its log memory, in mean steps
+# from one case to the next: what lasts less than a step is white
 LASTING_PRIOR = (math.log(1e-3), 2.5)
-MEMORY_PRIOR = (math.log(0.05), 2.0)
+MEMORY_PRIOR = (math.log(10.0), 1.5)
 SWING = 1.5  # prior sd of the log variance of noise by input, about its mean
 # From the loss's gradient in each case's noise to its gradient in each log parameter
 PullDiagonal = Callable[[PerN], PerParameter]
@@ -55,7 +55,7 @@ class AbstractNoise(ABC):
     def covariance(self, log_parameters: PerParameter, time: PerN) -> Evaluation | None:  # noqa: ARG002
         """Of the noise of cases with one another, beside that of each; None where there is none.
 
-        ``time``: of each case, from 0 to 1.
+        ``time``: of each case, in mean steps from one case to the next.
         """
         return None
 

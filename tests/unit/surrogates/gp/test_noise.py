@@ -232,6 +232,14 @@ def test_errors_are_as_large_as_predicted_where_the_noise_lasts_in_time() -> Non
     assert np.sqrt(np.mean(np.square(size["timed"]))) < 1.4
 
 
+@pytest.mark.parametrize("cases", [8, 300])
+def test_times_are_counted_in_mean_steps(cases: int) -> None:
+    time = 60.0 * np.random.default_rng(0).permutation(cases)
+    x = np.linspace(0.0, 1.0, cases)[:, None]
+    process = GaussianProcess(restarts=0, ensemble="never").fit(x, np.sin(6.0 * x[:, 0]), time=time)
+    assert np.ptp(process.posterior.time) == pytest.approx(cases)
+
+
 def test_the_whole_noise_is_found_where_it_lasts_in_time() -> None:
     x, time, y = case_of_correlated_noise(0)
     process = GaussianProcess(restarts=0, ensemble="never").fit(x, y, time=time)
