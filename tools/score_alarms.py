@@ -174,7 +174,7 @@ def _blocks_of(kept: Mapping[str, np.ndarray]) -> dict[float, ResidualBlock]:
 
 
 def _watched(kept: Mapping[str, np.ndarray], cage: Cage, *, written_down: bool) -> dict[str, Any]:
-    """What is raised without a fault, and the days until each fault is.
+    """What is raised without a fault, days that it stands, and those until each fault is raised.
 
     ``written_down``: whether the fault detector learns of cleanings from people.
     """
@@ -182,15 +182,20 @@ def _watched(kept: Mapping[str, np.ndarray], cage: Cage, *, written_down: bool) 
     cleaned = kept["cleaned"].tolist() if written_down else []
     watch = FaultWatch.over(cage, names)
     raised, known = list[tuple[str, float]](), None
+    standing, longest = Counter[str](), Counter[str]()  # half hours, of alarms that stand
     for day, block in blocks.items():
         if known is None and day >= SCORED_FROM + QUIET_DAYS:
             known = watch.copied()
         raised += [(name, round(day, 2)) for name in _see(watch, day, block, cleaned)]
+        active = [name for name, alarm in watch.alarms.items() if alarm.active]
+        standing = Counter({name: standing[name] + 1 for name in active})
+        longest |= standing
     assert known is not None
     late = {day: one for day, one in blocks.items() if day >= SCORED_FROM + QUIET_DAYS}
     return {
         "days": len(blocks) / 48.0,
         "raised": raised,
+        "stands": {name: half_hours / 48.0 for name, half_hours in longest.items()},
         "cleaned": kept["cleaned"].tolist(),
         "delays": {
             fault: [
@@ -254,7 +259,9 @@ def _sum_up(water: str, found: Mapping[int, dict[str, Any]]) -> None:
     years, false, cleaned = 0.0, Counter[str](), 0
     for number, one in found.items():
         own = Counter(name for name, day in one["raised"] if not _by_cleaning(name, day, one))
+        stands = ", ".join(f"{name} {days:.1f}" for name, days in one["stands"].items())
         print(f"{water}, truth {number}: {one['days']:.0f} days, {dict(own) or 'none'}")
+        print(f"  days that an alarm stood at the longest: {stands or 'none'}")
         years, false = years + one["days"] / 365.0, false + own
         cleaned += len(one["raised"]) - own.total()
     low, high = poisson_interval(false.total())
