@@ -120,9 +120,10 @@ class FaultDetectorSettings:
     net_change_sd, net_change_blocks
         Standard deviation of the relative change of drag by another or a cleaned net, the same at
         all sensors [-]; and blocks after it in which another one is not expected: four weeks.
-    block_weight
+    block_weight, block_weight_in_waves
         Weight of a block's log-likelihood ratio [-], as residuals of neighbouring blocks are
-        correlated.
+        correlated; and that of a twin with waves among its inputs, as what these leave unexplained
+        lasts as long as the sea state.
     evidence_memory
         Blocks after which evidence is forgotten: three days. A fault goes on showing.
     active_widening
@@ -177,6 +178,7 @@ class FaultDetectorSettings:
     net_change_sd: float = 0.4
     net_change_blocks: int = 1344
     block_weight: float = 0.6
+    block_weight_in_waves: float = 0.4
     evidence_memory: float = 144.0
     active_widening: float = 3.0
     limit: float = 28.0

@@ -162,8 +162,8 @@ def test_what_has_no_profile_cannot_train_one(level_1: Twin, water: Record):
         train(CAGE, None, field, base=level_1, training=WITH_PROFILE)
 
 
-def test_a_little_more_current_is_felt_where_the_profile_is_known(level_1: Twin, water: Record):
-    depths = [one.name for one in CAGE.depth_sensors]
-    found = responses(level_1, depths, Metocean.of_record(water).rows(np.array([5, 7])))
+def test_a_little_more_current_is_felt_where_the_profile_is_known(twin: Twin, water: Record):
+    found = responses(twin, [*twin.models.upper], Metocean.of_record(water).rows(np.array([5, 7])))
+    assert found["gradient"].shape == (2, 1, 2)
     assert np.all(np.linalg.norm(found["gradient"], axis=2) > 1.0)
     assert np.all(found["half_drag"] > 0.1)

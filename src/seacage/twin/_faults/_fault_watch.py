@@ -1,7 +1,7 @@
 """Fault detection over residuals of half hours: what alarms, and when."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from datetime import datetime
 
 import numpy as np
@@ -21,7 +21,7 @@ from seacage.twin._twin import Twin
 SETTINGS = FaultDetectorSettings()
 POLICY = AlarmPolicy.default()
 # Arrays that a block has row by row, as they are
-OF_A_BLOCK = "residual", "gradient", "current", "tension", "half_drag"
+OF_A_BLOCK = {one.name for one in fields(ResidualBlock)} - {"sensors", "received"}
 
 
 def block_residuals(
@@ -49,20 +49,17 @@ def block_residuals(
         "sensors": np.array(names),
         "number": np.array(list(rows)),
         "residual": np.array([error[inside].mean(axis=0) for inside in rows.values()]),
-        "own": np.array([twin.models.upper[name].spread.by == "own" for name in names]),
         "current": current,
     }
 
 
 def residual_blocks(found: Mapping[str, np.ndarray]) -> Iterator[ResidualBlock]:
     """The same, half hour by half hour, as the fault detector takes them."""
-    share = np.where(found["own"], SETTINGS.own_share, SETTINGS.carried_share)
+    received = np.ones(len(found["sensors"]), dtype=bool)
     for row in range(len(found["number"])):
         yield ResidualBlock(
             sensors=tuple(found["sensors"].tolist()),
-            received=np.ones(len(share), dtype=bool),
-            own_sd=found["std"][row] * share,
-            carried=~found["own"],
+            received=received,
             **{name: found[name][row] for name in OF_A_BLOCK},
         )
 

@@ -51,6 +51,7 @@ class ResidualBlock:
     current: Float[np.ndarray, "2"]  # at the buoy, (east, north) [m/s]
     tension: Float[np.ndarray, " line"]  # of each bridle, predicted [N]
     half_drag: Float[np.ndarray, " sensor"]  # shift if the net lost half its drag [N] or [m]
+    in_waves: bool | np.bool = False  # whether the prediction has waves among its inputs
 
     @property
     def drag(self) -> Float[np.ndarray, " sensor"]:
@@ -83,34 +84,31 @@ def close_block(
     current = np.array([sums.east, sums.north]) / sums.ticks
     here = replace(answered.metocean, current_velocity=current[None])
     found = responses(twin, names, here)
-    if not np.isfinite(found["std"]).all():
+    if not np.isfinite(found["own_sd"]).all():
         return None
-    carried = np.array([twin.models.upper[name].spread.by != "own" for name in names], dtype=bool)
-    share = np.where(carried, settings.carried_share, settings.own_share)
     return ResidualBlock(
         sensors=names,
         received=received,
         residual=np.array([one.error / max(one.count, 1) for one in each]) * received,
-        own_sd=found.pop("std")[0] * share,
-        carried=carried,
         current=current,
         **{name: one[0] for name, one in found.items()},
     )
 
 
 def responses(twin: Twin, sensors: Sequence[str], water: Metocean) -> dict[str, np.ndarray]:
-    """Predict in each row of water what ``ResidualBlock`` has of these sensors; NaN if not known.
-
-    ``std`` is that of the residual.
-    """
+    """Predict what ``ResidualBlock`` has of these sensors in each row of water; NaN if unknown."""
     columns = [twin.sensor_names.index(name) for name in sensors]
-    step = twin.fault_detector.current_step
+    settings, step = twin.fault_detector, twin.fault_detector.current_step
+    carried = np.array([twin.models.upper[name].spread.by != "own" for name in sensors], dtype=bool)
+    share = np.where(carried, settings.carried_share, settings.own_share)
     # Drag goes with the square of the speed.
     halved = water.with_currents(water.currents * math.sqrt(0.5))
     answer = twin.predict(water.joined(water, water.sides(step), halved)).without_nodes()
     mean, east, west, north, south, half = answer.sensor.mean[:, columns].reshape(6, len(water), -1)
     return {
-        "std": answer.sensor.std[: len(water), columns],
+        "own_sd": share * answer.sensor.std[: len(water), columns],
+        "carried": np.tile(carried, (len(water), 1)),
+        "in_waves": np.full(len(water), "waves" in twin.models.inputs),
         "gradient": np.stack([east - west, north - south], axis=2) / (2.0 * step),
         "tension": answer.bridle_tension.mean[: len(water)],
         "half_drag": half - mean,

@@ -332,6 +332,17 @@ def test_a_higher_limit_raises_nothing_and_a_larger_weight_raises_sooner():
     assert blocks[1] < blocks[0]
 
 
+def test_a_block_counts_less_where_the_prediction_has_waves():
+    off = block(only("depth-1", 8.0 * OWN[0]))
+    calm, rough = (
+        Watched().detector.updated(one, ACE, SETTINGS, active=frozenset()).cusums()
+        for one in (off, replace(off, in_waves=True))
+    )
+    ratio = SETTINGS.block_weight_in_waves / SETTINGS.block_weight
+    assert ratio < 1.0
+    assert rough["irregular.depth-1"] == pytest.approx(ratio * calm["irregular.depth-1"])
+
+
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
 def test_a_setting_that_is_no_size_is_refused_by_its_name(value):
     with pytest.raises(InputError, match=r"water_sd = .* the default, 0\.1"):

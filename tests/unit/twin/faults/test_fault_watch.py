@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.testing import stand_in_campaign, stand_in_field, stand_in_seas, stand_in_twin
-from seacage.twin import Metocean, Training, block_residuals, train
+from seacage.twin import Metocean, Training, block_residuals, residual_blocks, train
 
 
 def twin_in_waves():
@@ -37,7 +37,12 @@ def test_a_half_hour_is_predicted_at_its_mean_current_in_its_last_waves():
     here = replace(water.rows(np.array([2, 5])), current_velocity=means)
     columns = [twin.sensor_names.index(name) for name in found["sensors"].tolist()]
     assert columns
-    np.testing.assert_allclose(found["std"], twin.predict(here).sensor.std[:, columns])
+    own = [twin.models.upper[name].spread.by == "own" for name in found["sensors"].tolist()]
+    share = np.where(own, twin.fault_detector.own_share, 1.0)
+    std = twin.predict(here).sensor.std[:, columns]
+    np.testing.assert_allclose(found["own_sd"], share * std)
+    assert all(one.in_waves for one in residual_blocks(found))
+    np.testing.assert_array_equal(found["carried"], np.tile(~np.array(own), (2, 1)))
     np.testing.assert_allclose(found["tension"], twin.predict(here).bridle_tension.mean)
     calm = twin.predict(Metocean.without_waves(means))
     assert not np.allclose(found["tension"], calm.bridle_tension.mean)
