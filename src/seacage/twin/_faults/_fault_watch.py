@@ -55,11 +55,10 @@ def block_residuals(
 
 def residual_blocks(found: Mapping[str, np.ndarray]) -> Iterator[ResidualBlock]:
     """The same, half hour by half hour, as the fault detector takes them."""
-    received = np.ones(len(found["sensors"]), dtype=bool)
     for row in range(len(found["number"])):
         yield ResidualBlock(
             sensors=tuple(found["sensors"].tolist()),
-            received=received,
+            received=np.ones(len(found["sensors"]), dtype=bool),
             **{name: found[name][row] for name in OF_A_BLOCK},
         )
 

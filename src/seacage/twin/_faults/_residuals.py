@@ -84,7 +84,7 @@ def close_block(
     current = np.array([sums.east, sums.north]) / sums.ticks
     here = replace(answered.metocean, current_velocity=current[None])
     found = responses(twin, names, here)
-    if not np.isfinite(found["own_sd"]).all():
+    if not np.isfinite(found.pop("std")).all():
         return None
     return ResidualBlock(
         sensors=names,
@@ -96,7 +96,10 @@ def close_block(
 
 
 def responses(twin: Twin, sensors: Sequence[str], water: Metocean) -> dict[str, np.ndarray]:
-    """Predict what ``ResidualBlock`` has of these sensors in each row of water; NaN if unknown."""
+    """Predict what ``ResidualBlock`` has of these sensors in each row of water; NaN if unknown.
+
+    ``std`` is that of the whole residual.
+    """
     columns = [twin.sensor_names.index(name) for name in sensors]
     settings, step = twin.fault_detector, twin.fault_detector.current_step
     carried = np.array([twin.models.upper[name].spread.by != "own" for name in sensors], dtype=bool)
@@ -105,8 +108,10 @@ def responses(twin: Twin, sensors: Sequence[str], water: Metocean) -> dict[str, 
     halved = water.with_currents(water.currents * math.sqrt(0.5))
     answer = twin.predict(water.joined(water, water.sides(step), halved)).without_nodes()
     mean, east, west, north, south, half = answer.sensor.mean[:, columns].reshape(6, len(water), -1)
+    std = answer.sensor.std[: len(water), columns]
     return {
-        "own_sd": share * answer.sensor.std[: len(water), columns],
+        "std": std,
+        "own_sd": share * std,
         "carried": np.tile(carried, (len(water), 1)),
         "in_waves": np.full(len(water), "waves" in twin.models.inputs),
         "gradient": np.stack([east - west, north - south], axis=2) / (2.0 * step),
