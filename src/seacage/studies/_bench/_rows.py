@@ -141,14 +141,14 @@ def _watch(
     newton = np.repeat([1.0, 1e3], [len(given.cage.depth_sensors), len(given.cage.shackles)])
     found = block_residuals(twin, buoy, time, own["reading"] * newton, np.arange(len(time)))
     places = [names.index(name) for name in found["sensors"].tolist()]
-    watch = FaultWatch.over(given.cage, found["sensors"].tolist())
+    begin, watch = moment(time[0]), FaultWatch.over(given.cage, found["sensors"].tolist())
     outside = np.abs(found["residual"]) > SIGMAS * found["std"]
     crossed = outside & ~np.vstack([np.zeros_like(outside[:1]), outside[:-1]])
     for number, one, crosses in zip(
         found["number"].tolist(), residual_blocks(found), crossed, strict=True
     ):
         limit[number, places] = crosses
-        for alarm in watch.see(moment(time[0]) + timedelta(minutes=30 * (number + 1)), one):
+        for alarm in watch.see(begin + timedelta(minutes=30 * (number + 1)), one):
             sensor = alarm.removeprefix("irregular.")
             ours[number, names.index(sensor) if sensor in names else -1] = True
 
