@@ -21,8 +21,8 @@ from seacage.dynamics._parts._assembly import (
     Slender,
     Springs,
 )
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
+from seacage.dynamics._physics._screens import Law
 from seacage.ocean import SeaState, Waves, sample_waves
 
 NONE = np.zeros(0)

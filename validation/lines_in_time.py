@@ -12,8 +12,8 @@ from seacage.conventions import WATER_DENSITY
 from seacage.dynamics import settle
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._laws import MOVING_LAWS
 from seacage.dynamics._physics._motion import NetLaw, Water, moving_cylinder_force, moving_net_load
+from seacage.dynamics._physics._screens import MOVING_LAWS
 from seacage.ocean import SeaState, Waves, wavenumber
 from validation._bare import afloat, chain, energy, marched, period
 from validation._row import Kind, Row, Section

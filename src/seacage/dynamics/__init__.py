@@ -4,8 +4,16 @@ from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._choice import SPRINGS, Mooring, line_ends, line_places
 from seacage.dynamics._moored._detailed import Damage
 from seacage.dynamics._physics._catenary import catenary
-from seacage.dynamics._physics._laws import LAWS, MOVING_LAWS, Law, ScreenLaw, law_label
-from seacage.dynamics._physics._screens import aarsnes, kristiansen_faltinsen, loland
+from seacage.dynamics._physics._screens import (
+    LAWS,
+    MOVING_LAWS,
+    Law,
+    ScreenLaw,
+    aarsnes,
+    kristiansen_faltinsen,
+    law_label,
+    loland,
+)
 from seacage.dynamics._revision import PHYSICS
 from seacage.dynamics._settle import Response, net_load, rest_shape, settle
 from seacage.dynamics._time._extremes import Extremes, extremes

@@ -14,9 +14,8 @@ from seacage.dynamics._moored._choice import Mooring, moor, part
 from seacage.dynamics._moored._ends import mooring_result
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._loads import SteadyFlow, line_tension, nodal_force, total_net_force
-from seacage.dynamics._physics._screens import Tuning, beyond_law, law_of_each, law_warnings
+from seacage.dynamics._physics._screens import Law, Tuning, beyond_law, law_of_each, law_warnings
 from seacage.ocean import SeaState, wave_velocity_variance
 
 

@@ -13,10 +13,9 @@ from seacage.conventions import WATER_VISCOSITY
 from seacage.dynamics._kernel._library import kernel, parts_of
 from seacage.dynamics._kernel._structs import BodyStruct, NettingStruct, SeaStruct, Struct
 from seacage.dynamics._parts._assembly import Assembly, Bars
-from seacage.dynamics._physics._laws import own_law
 from seacage.dynamics._physics._loads import DYNAMIC
 from seacage.dynamics._physics._motion import NetLaw, bar_damping
-from seacage.dynamics._physics._screens import CYLINDER, facing
+from seacage.dynamics._physics._screens import CYLINDER, facing, own_law
 from seacage.ocean import Waves
 
 HELD = 1e20  # mass of a node that is held in its place [kg]

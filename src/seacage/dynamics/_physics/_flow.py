@@ -6,9 +6,8 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._loads import DYNAMIC, SteadyFlow
-from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning, law_of_each
+from seacage.dynamics._physics._screens import AS_PUBLISHED, Law, Screen, Tuning, law_of_each
 from seacage.dynamics._physics._wake import downstream, wake_factor
 from seacage.ocean import over_depth
 

@@ -20,7 +20,6 @@ from seacage.dynamics._parts._assembly import (
     Slender,
     direction,
 )
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
     Nodal,
@@ -34,7 +33,7 @@ from seacage.dynamics._physics._loads import (
     spring_force,
     wet_share,
 )
-from seacage.dynamics._physics._screens import AS_PUBLISHED, Screen, Tuning, check_laws
+from seacage.dynamics._physics._screens import AS_PUBLISHED, Law, Screen, Tuning, check_laws
 
 CasePanel = Float[np.ndarray, "*case panel"]
 CasePanel3 = Float[np.ndarray, "case panel 3"]

@@ -8,8 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.dynamics._parts._assembly import Assembly, Panels
-from seacage.dynamics._physics._laws import Law
-from seacage.dynamics._physics._screens import Screen, loland
+from seacage.dynamics._physics._screens import Law, Screen, loland
 
 CasePanel = Float[np.ndarray, "case panel"]
 Panel2 = Float[np.ndarray, "panel 2"]

@@ -12,8 +12,7 @@ from seacage.conventions import InputError, Progress, count_times
 from seacage.dynamics._kernel._march import REFRESH
 from seacage.dynamics._kernel._march_inputs import simulation_lanes
 from seacage.dynamics._moored._detailed import Damage
-from seacage.dynamics._physics._laws import Law
-from seacage.dynamics._physics._screens import Tuning
+from seacage.dynamics._physics._screens import Law, Tuning
 from seacage.dynamics._time._segments import AbstractWeather, Build, Course, SegmentBatch
 from seacage.dynamics._time._simulation import nodes_of
 

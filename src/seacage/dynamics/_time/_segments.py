@@ -16,9 +16,8 @@ from seacage.dynamics._moored._detailed import Damage, broken, full_assembly
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import Tuning
+from seacage.dynamics._physics._screens import Law, Tuning
 from seacage.dynamics._physics._wake import wake_in_sight
 from seacage.dynamics._time._forcing import morison_waves
 from seacage.ocean import MAX_CURRENT_SPEED, Waves

@@ -15,8 +15,8 @@ from seacage.dynamics._kernel._march import REFRESH, March, Steps
 from seacage.dynamics._kernel._march_inputs import Ocean, has_long_crests, simulation_lanes
 from seacage.dynamics._moored._choice import Mooring
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._screens import (
+    Law,
     Tuning,
     beyond_law,
     check_laws,

@@ -15,9 +15,8 @@ from seacage.dynamics._moored._choice import Mooring, moor, part
 from seacage.dynamics._moored._mass_scaling import scale_mass
 from seacage.dynamics._parts._assembly import Assembly
 from seacage.dynamics._physics._flow import steady_flow
-from seacage.dynamics._physics._laws import Law
 from seacage.dynamics._physics._motion import NetLaw
-from seacage.dynamics._physics._screens import Tuning
+from seacage.dynamics._physics._screens import Law, Tuning
 from seacage.dynamics._physics._wake import wake_share
 from seacage.dynamics._settle import rest_shape
 from seacage.ocean import SeaState

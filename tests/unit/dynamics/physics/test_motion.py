@@ -9,7 +9,6 @@ from seacage.cage import Cage
 from seacage.conventions import WATER_DENSITY, WATER_VISCOSITY, InputError
 from seacage.dynamics import loland
 from seacage.dynamics._parts._assembly import Assembly, Bars, Panels
-from seacage.dynamics._physics._laws import LAWS, MOVING_LAWS
 from seacage.dynamics._physics._loads import float_force, wet_share
 from seacage.dynamics._physics._motion import (
     NetLaw,
@@ -22,7 +21,7 @@ from seacage.dynamics._physics._motion import (
     past_panels,
     twine_load,
 )
-from seacage.dynamics._physics._screens import Screen
+from seacage.dynamics._physics._screens import LAWS, MOVING_LAWS, Screen
 
 SQUARE = np.array([[[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, -1.0], [0.0, 0.0, -1.0]]])
 """Two metres wide and one deep, facing north and south [m]."""
