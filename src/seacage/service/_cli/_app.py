@@ -7,6 +7,7 @@ import typer
 
 from seacage.service._cli import (
     _campaign,
+    _clearance,
     _config,
     _doctor,
     _field,
@@ -22,7 +23,6 @@ from seacage.service._cli import (
 from seacage.service._cli._cage import _check, _new
 from seacage.service._cli._console import EXIT_CODES
 from seacage.service._cli._data import _archive, _backup, _token, _twin
-from seacage.service._cli._rov import _commands
 
 app = typer.Typer(
     name="seacage",
@@ -75,8 +75,8 @@ app.command()(_score.score)
 app.add_typer(_study.group, name="study")
 app.command()(_serve.serve)
 app.command()(_replay.replay)
-app.command()(_commands.clearance)
-app.command("inspect-path")(_commands.inspect_path)
+app.command()(_clearance.clearance)
+app.command("inspect-path")(_clearance.inspect_path)
 app.command()(_publish.publish)
 app.add_typer(_token.group, name="token")
 app.add_typer(_twin.group, name="twin")
