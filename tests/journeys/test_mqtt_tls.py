@@ -21,9 +21,6 @@ class Ears:
         self.received.append(has_received.payload)
         has_received.acknowledge()
 
-    async def drain(self):
-        pass
-
 
 @pytest.fixture
 def encrypted(tmp_path, certificate):
@@ -38,7 +35,7 @@ def linked(url, ears, ca):
         Broker.parse(url, ca=ca),
         client_id="me",
         filters=["a/#"],
-        listener=ears,
+        receive=ears.hear,
         receive_maximum=50,
         session_s=60,
     )

@@ -19,7 +19,7 @@ from seacage.service._live._cage import LiveCage
 from seacage.service._live._clock import AbstractClock, FollowingClock, ReplayClock, WallClock
 from seacage.service._live._metrics import Metrics
 from seacage.service._live._replay import Replay
-from seacage.service._live._retention import Retention
+from seacage.service._live._retention import retire_old_days
 from seacage.service._live._twin_shelf import TwinShelf
 from seacage.service._publish._opcua_server import OpcUaServer
 from seacage.service._publish._webhooks import WebhookNotifier
@@ -72,11 +72,11 @@ def worker_of(cage: str, workers: Sequence[str]) -> str:
     Source: Thaler & Ravishankar (1998), Using name-based mappings to increase hit rates: the
     highest random weight.
     """
-    return max(workers, key=lambda worker: (_weight(cage, worker), worker))
 
+    def weight(worker: str) -> tuple[bytes, str]:
+        return blake2b(f"{cage}\n{worker}".encode(), digest_size=8).digest(), worker
 
-def _weight(cage: str, worker: str) -> bytes:
-    return blake2b(f"{cage}\n{worker}".encode(), digest_size=8).digest()
+    return max(workers, key=weight)
 
 
 def policy_of(settings: Settings, name: str, twin: Twin) -> AlarmPolicy:
@@ -146,7 +146,7 @@ def assemble(
         keep_days = settings.store.keep_days
         if replay is None and keep_days is not None:
             clocks = dict.fromkeys(cages, clock)
-            feeds.append(Retention(store, clocks=clocks, keep_days=keep_days).run)
+            feeds.append(partial(retire_old_days, store, clocks=clocks, keep_days=keep_days))
         if replay is not None and isinstance(clock, ReplayClock):
             feeds.append(partial(replay.feed, next(iter(cages.values())), clock))
         service = Service(

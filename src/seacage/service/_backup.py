@@ -3,7 +3,7 @@
 import hashlib
 import os
 import tarfile
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from importlib.metadata import version
@@ -126,10 +126,7 @@ def _add_all(backup: "_Backup", settings: Settings, places: dict[str, str], copi
 
 
 class _Backup:
-    """A backup as it is written.
-
-    ``tar``: open for writing.
-    """
+    """A backup as it is written into a file of tar."""
 
     def __init__(self, tar: tarfile.TarFile) -> None:
         self._tar, self.files = tar, dict[str, str]()
@@ -138,8 +135,12 @@ class _Backup:
         self, folder: Path, to: str, *, without: Collection[Path | str | None] = ()
     ) -> None:
         """Add the files of a folder, but for some folders and databases in it."""
-        for path in _files_of(folder, without):
-            self.add(path, (Path(to) / path.relative_to(folder)).as_posix())
+        apart = {Path(f"{one}{end}").resolve() for one in without if one for end in SIDE_FILES}
+        for place, folders, names in os.walk(folder, followlinks=True):
+            folders[:] = sorted(one for one in folders if Path(place, one).resolve() not in apart)
+            for path in (Path(place, name) for name in sorted(names)):
+                if path.is_file() and path.resolve() not in apart:
+                    self.add(path, (Path(to) / path.relative_to(folder)).as_posix())
 
     def add(self, path: Path, name: str) -> None:
         """Add a file as far as it goes now: a log may grow meanwhile."""
@@ -168,12 +169,3 @@ class Hashed:
         piece = self._file.read(size)
         self.sum.update(piece)
         return piece
-
-
-def _files_of(folder: Path, without: Collection[Path | str | None]) -> Iterator[Path]:
-    apart = {Path(f"{one}{end}").resolve() for one in without if one for end in SIDE_FILES}
-    for place, folders, names in os.walk(folder, followlinks=True):
-        folders[:] = sorted(one for one in folders if Path(place, one).resolve() not in apart)
-        for path in (Path(place, name) for name in sorted(names)):
-            if path.is_file() and path.resolve() not in apart:
-                yield path

@@ -76,7 +76,7 @@ def _extract_all(file: Path, to: Path, *, other_physics: bool) -> Manifest:
                 if ".." in PurePosixPath(name).parts or name.startswith("/"):
                     raise InputError(f"restore: {file} has a file outside its folder, {name!r}.")
                 _extract(tar, entries[name], to / name, sha256)
-    except (tarfile.TarError, EOFError, KeyError, ValidationError, _ChangedError) as error:
+    except (tarfile.TarError, EOFError, KeyError, ValidationError) as error:
         raise InputError(
             f"restore: {file} is no whole backup ({str(error).splitlines()[0]}). "
             "Take another copy of it, or an earlier backup."
@@ -93,11 +93,7 @@ def _extract(tar: tarfile.TarFile, entry: tarfile.TarInfo, to: Path, sha256: str
     with os.fdopen(descriptor, "wb") as target:
         shutil.copyfileobj(hashed, target)
     if hashed.sum.hexdigest() != sha256:
-        raise _ChangedError(f"{entry.name} is not as it was written")
-
-
-class _ChangedError(Exception):
-    """A file of a backup is not what was written."""
+        raise tarfile.ReadError(f"{entry.name} is not as it was written")
 
 
 def _adapt_settings(folder: Path, data: Path, manifest: Manifest) -> None:

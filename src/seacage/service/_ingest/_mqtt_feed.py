@@ -102,7 +102,7 @@ class MqttFeed:
             broker,
             client_id=f"{client_id}-live",
             filters=[self._topics.samples(cage) for cage in cages],
-            listener=self._newest,
+            receive=self._newest.put,
             receive_maximum=_AHEAD,
             session_s=0,
             qos=0,
@@ -111,7 +111,8 @@ class MqttFeed:
             broker,
             client_id=client_id,
             filters=[share(self._topics.samples(cage), group) for cage in cages],
-            listener=self,
+            receive=self._queue_message,
+            drain=self._empty.wait,
             receive_maximum=_AHEAD,
             session_s=_SESSION_S,
             will=_will(self._topics.status(client_id), tuple(cages)),
@@ -150,7 +151,7 @@ class MqttFeed:
         lines = [announcement_json(event)]
         self._loop.call_soon_threadsafe(self.publish_alarms, event.cage, lines)
 
-    def hear(self, message: Received) -> None:
+    def _queue_message(self, message: Received) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
         self._messages.inc()
         if len(self._queue) < _AHEAD or message.sure:
@@ -163,10 +164,6 @@ class MqttFeed:
             self._filled.set()
         else:
             self._metrics.samples.labels(self._cage_of(message), "dropped").inc()
-
-    async def drain(self) -> None:
-        """Wait until everything that was queued is on disk or set aside."""
-        await self._empty.wait()
 
     async def _store(self) -> None:
         while True:
@@ -302,20 +299,17 @@ class MqttFeed:
 
 
 class _Newest:
-    """Listens for the newest message of each stream; what came before it is gone."""
+    """The newest message of each stream; what came before it is gone."""
 
     def __init__(self) -> None:
         self._latest: dict[str, Received] = {}
         self._filled = asyncio.Event()
 
-    def hear(self, message: Received) -> None:
-        """See ``Listener``."""
+    def put(self, message: Received) -> None:
+        """Put a message in place of the one before of its stream."""
         if message.topic in self._latest or len(self._latest) < _STREAMS:
             self._latest[message.topic] = message
             self._filled.set()
-
-    async def drain(self) -> None:
-        """See ``Listener``."""
 
     async def take(self) -> list[Received]:
         """Wait for messages and take them."""

@@ -3,11 +3,11 @@
 import asyncio
 import random
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import structlog
 from paho.mqtt.client import Client, MQTTMessage
@@ -51,19 +51,6 @@ class _Ended(Exception):  # noqa: N818
     """A connection has ended, and why."""
 
 
-@runtime_checkable
-class Listener(Protocol):
-    """Takes the messages that come."""
-
-    def hear(self, message: Received) -> None:
-        """Take a message; must not take long."""
-        ...
-
-    async def drain(self) -> None:
-        """Wait until all messages that came are dealt with."""
-        ...
-
-
 class Link:
     """One client of a broker, in the event loop's own thread.
 
@@ -81,7 +68,9 @@ class Link:
         *,
         client_id: str,  # under which the broker keeps what comes while the client is away
         filters: Sequence[str],  # what to listen to
-        listener: Listener,  # who hears it
+        receive: Callable[[Received], None],  # takes a message; must not take long
+        # Waits until all messages that came are dealt with; None where none has to be
+        drain: Callable[[], Awaitable[object]] | None = None,
         # See ``connecting``
         receive_maximum: int,
         session_s: int,
@@ -92,8 +81,8 @@ class Link:
         qos: int = 1,
     ) -> None:
         self._broker, self._client_id, self._filters = broker, client_id, tuple(filters)
-        self._listener, self._will, self._qos = listener, will, qos
-        self._greetings = greetings
+        self._receive, self._drain, self._greetings = receive, drain, greetings
+        self._will, self._qos = will, qos
         self._connection: _Connection | None = None
         self._properties = connecting(receive_maximum=receive_maximum, session_s=session_s)
         self.fault: str | None = f"{broker} has not answered yet."
@@ -124,7 +113,8 @@ class Link:
                 if failures <= 1:  # then it is known, until it is well again
                     _log.warning("broker lost", broker=str(self._broker), reason=str(error))
                 self.fault = f"{self._broker} is away ({error})."
-            await self._listener.drain()
+            if self._drain is not None:
+                await self._drain()
             wait_s = _PATIENCE_S[min(failures, len(_PATIENCE_S) - 1)]
             # Not all at once, where a farm's clients lost the broker together.
             await asyncio.sleep(wait_s * random.uniform(0.7, 1.3))
@@ -163,7 +153,7 @@ class Link:
         except UnicodeDecodeError:
             topic = ""
         mid, sure = message.mid, message.qos == 1
-        self._listener.hear(
+        self._receive(
             Received(
                 topic=topic,
                 payload=bytes(message.payload),

@@ -35,7 +35,8 @@ class Sender(AbstractCaller):
             {"samples": [{"stream": one.stream} | sample_fields(one) for one in samples]}
         )
         answer = ""
-        for patience_s in (*self.patience_s, None):
+        for pause_s in (0.0, *self.patience_s):
+            time.sleep(pause_s)
             try:
                 status, raw = self.post("samples", body, timeout_s=30.0)
                 answer = raw.decode("utf-8", "replace")
@@ -45,6 +46,4 @@ class Sender(AbstractCaller):
                 return Receipt.model_validate_json(answer)
             if status not in _LATER:
                 raise InputError(f"{self.address} refused the samples ({status}): {answer[:300]}")
-            if patience_s is not None:
-                time.sleep(patience_s)
         raise SendError(f"{self.address} takes no samples ({answer[:300]}). Is it running?")

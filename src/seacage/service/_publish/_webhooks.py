@@ -95,14 +95,14 @@ class WebhookNotifier:
                 await asyncio.sleep(_LOOK_S)
                 continue
             body = queue.popleft()
-            for patience_s in (*_PATIENCE_S, None):
+            problem: str | None = ""
+            for pause_s in (0.0, *_PATIENCE_S):
+                await asyncio.sleep(pause_s)
                 problem = await asyncio.to_thread(_post_once, hook, body)
                 if problem is None:
                     break
-                if patience_s is None:
-                    _log.error("webhook gives up", url=hook.url, reason=problem, body=body)
-                else:
-                    await asyncio.sleep(patience_s)
+            else:
+                _log.error("webhook gives up", url=hook.url, reason=problem, body=body)
 
 
 def _post_once(hook: Webhook, body: str) -> str | None:

@@ -72,7 +72,9 @@ def say(one, payload, topic=OBS, *, sure=True):
         one.acknowledged[number] = True
 
     content = payload if isinstance(payload, bytes) else json.dumps(payload).encode()
-    one.feed.hear(Received(topic=topic, payload=content, acknowledge=acknowledge, sure=sure))
+    one.feed._queue_message(
+        Received(topic=topic, payload=content, acknowledge=acknowledge, sure=sure)
+    )
 
 
 def settled(one, *, within_s=20.0):
@@ -80,7 +82,7 @@ def settled(one, *, within_s=20.0):
 
     async def work():
         task = asyncio.create_task(one.feed._store())
-        await asyncio.wait_for(one.feed.drain(), within_s)
+        await asyncio.wait_for(one.feed._empty.wait(), within_s)
         task.cancel()
 
     asyncio.run(work())
@@ -239,7 +241,7 @@ def test_large_messages_pause_the_reading_earlier(one):
 def newest(one, minute):
     """Have the second connection bring a reading."""
     content = json.dumps(reading(minute)).encode()
-    one.feed._newest.hear(Received(topic=OBS, payload=content, acknowledge=list, sure=False))
+    one.feed._newest.put(Received(topic=OBS, payload=content, acknowledge=list, sure=False))
 
 
 async def until(done):
@@ -289,7 +291,7 @@ def test_while_a_backlog_drains_the_newest_of_each_stream_is_kept_before_it(one,
             await until(one.kept)
             live = [sample.t.isoformat() for sample in one.kept()]
             stuck.set()
-            await one.feed.drain()
+            await one.feed._empty.wait()
             await until(lambda: not one.feed._behind.is_set())
         return live
 
@@ -305,7 +307,7 @@ def test_while_old_samples_come_there_is_a_second_connection_and_then_no_more(on
     async def work():
         with working(one.feed._store(), one.feed._show_newest()):
             say(one, reading(0))
-            await one.feed.drain()
+            await one.feed._empty.wait()
             assert not one.feed._behind.is_set()
             say(one, reading(-30))
             await until(lambda: connections.made)

@@ -6,7 +6,7 @@ import pytest
 from seacage.conventions import InputError
 from seacage.service._assembly import assemble
 from seacage.service._live._clock import AbstractClock, floor_time
-from seacage.service._live._retention import Retention
+from seacage.service._live._retention import retire_old_days
 from seacage.service._settings import Settings, read_settings
 from seacage.service._store._store import look_into, open_store
 from seacage.testing import stand_in_twin
@@ -29,11 +29,13 @@ def store(tmp_path):
 
 def looked(store, *, times=1, keep_days=2):
     """Let retention look so often, then stop it."""
-    retention = Retention(store, clocks={"ace": NoonClock()}, keep_days=keep_days, every_s=0.05)
 
     async def look():
+        looks = retire_old_days(
+            store, clocks={"ace": NoonClock()}, keep_days=keep_days, every_s=0.05
+        )
         with pytest.raises(TimeoutError):
-            await asyncio.wait_for(retention.run(), 0.3 * times)
+            await asyncio.wait_for(looks, 0.3 * times)
 
     asyncio.run(look())
 

@@ -23,13 +23,10 @@ class Ears:
         if len(self.received) > self._keep:
             received.acknowledge()
 
-    async def drain(self):
-        pass
-
 
 def link(url, ears, **how):
     body = {"client_id": "me", "filters": ["a/#"], "receive_maximum": 50, "session_s": 600}
-    return Link(Broker.parse(url), listener=ears, **(body | how))
+    return Link(Broker.parse(url), receive=ears.hear, **(body | how))
 
 
 @asynccontextmanager
