@@ -8,8 +8,8 @@ from seacage.surrogates._calibration._conformal import (
 )
 from seacage.surrogates._calibration._residual import FittedResidual, ResidualModel
 from seacage.surrogates._design import spread_design, window_design
-from seacage.surrogates._domain import Domain
 from seacage.surrogates._features import (
+    Domain,
     current_features,
     metocean_features,
     sea_features,
@@ -44,9 +44,13 @@ from seacage.surrogates._scores import (
     skill,
 )
 from seacage.surrogates._shape._pca import FittedPcaGP, OverTime, PcaGP
-from seacage.surrogates._shape._shape_gp import FittedCoordinate, FittedShapeGP, ShapeGP
+from seacage.surrogates._shape._shape_gp import (
+    FittedCoordinate,
+    FittedShapeGP,
+    ShapeGP,
+    check_symmetry,
+)
 from seacage.surrogates._shape._symmetry import Symmetry
-from seacage.surrogates._shape._symmetry_check import check_symmetry
 from seacage.surrogates._tables._region import Box, Disc
 from seacage.surrogates._tables._table import Table, Tabulable
 

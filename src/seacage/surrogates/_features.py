@@ -1,15 +1,20 @@
-"""Sea states as features: directions become vectors, so that north has no seam."""
+"""Sea states as features, where directions are vectors without a seam at north; their domain."""
+
+from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
-from jaxtyping import Float
+from jaxtyping import Bool, Float
 
 from seacage.conventions import InputError
+from seacage.surrogates._prediction import check_inputs
 
 PerRow = Float[np.ndarray, " row"]
 Row2 = Float[np.ndarray, "row 2"]
 RowFeature = Float[np.ndarray, "row feature"]
 # Share by which a length may differ from that of its vector: features may come rounded
 ROUNDED = 1e-3
+MARGIN = 0.01  # of each feature's range: a sampled campaign never quite reaches its own limits
 
 
 def current_features(current_velocity: Row2) -> Float[np.ndarray, "row 3"]:
@@ -110,3 +115,27 @@ def check_turnable(x: RowFeature, *, what: str) -> None:
                 f"of the vector ({vector[row, 0]:g}, {vector[row, 1]:g}) after it. Directions in "
                 "degrees cannot be turned: build x with metocean_features."
             )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Domain:
+    """Range of each feature in the training.
+
+    A box: it knows nothing of gaps inside it, and of a current its speed limits the corners.
+    """
+
+    # Smallest and largest value of each feature
+    lower: Float[np.ndarray, " feature"]
+    upper: Float[np.ndarray, " feature"]
+
+    @classmethod
+    def of(cls, x: Float[np.ndarray, "n feature"]) -> Self:
+        """Learn from the training inputs."""
+        x = check_inputs(x, what="Domain.of")
+        return cls(lower=x.min(axis=0), upper=x.max(axis=0))
+
+    def contains(self, x: Float[np.ndarray, "row feature"]) -> Bool[np.ndarray, " row"]:
+        """Whether each row lies within every range, give or take 1 % of it."""
+        x = check_inputs(x, what="Domain.contains", width=len(self.lower))
+        margin = MARGIN * (self.upper - self.lower)
+        return np.all((x >= self.lower - margin) & (x <= self.upper + margin), axis=1)

@@ -14,7 +14,6 @@ from seacage.surrogates._features import check_turnable
 from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
 from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
-from seacage.surrogates._shape._symmetry_check import check_symmetry
 
 NFeature = Float[np.ndarray, "n feature"]
 NNode3 = Float[np.ndarray, "n node 3"]
@@ -24,6 +23,10 @@ RowMode = Float[np.ndarray, "row mode"]
 RowNode3 = Float[np.ndarray, "row node 3"]
 # Share of the cases that an interval of so many standard deviations is to cover
 LEVEL, DEVIATIONS = 0.95, 1.959964
+# Cases that the trial model of ``check_symmetry`` learns from, and that it is checked on, at most
+TRAINING, HELD_OUT = 400, 100
+COMPRESSION = 0.01  # of the trial model [m]
+FEW = 20  # least number of cases that can show an asymmetry
 Nodes = slice | Int[np.ndarray, " node"]  # some nodes: a slice, or their numbers
 EVERY = slice(None)
 
@@ -301,6 +304,88 @@ class FittedCoordinate:
         x = check_inputs(x, what="predict", width=self.shape.features)
         answer = self.shape.predict_nodes(x, np.array([self.node]), noisy=noisy)
         return Prediction(mean=answer.mean[:, 0, self.axis], std=answer.std[:, 0, self.axis])
+
+
+def check_symmetry(
+    symmetry: Symmetry,
+    x: NFeature,
+    node_position: NNode3,
+    *,
+    tolerance: float = 0.05,
+    seed: int = 0,
+) -> float:
+    """Refuse a symmetry that the shapes do not have.
+
+    A trial model that knows of no symmetry learns four fifths of the cases. The others it is
+    asked about twice: as they are, and by their images, whose shapes are moved back. Only an
+    asymmetry of the cage, its mooring or the sea can make the images miss by more. The cases
+    must cover the images: currents and waves from all round.
+
+    Raises InputError: the asymmetry is above the tolerance, or the cases are too few, or too hard
+    for the trial model, to tell.
+
+    Parameters
+    ----------
+    symmetry
+        Of the net.
+    x
+        From ``metocean_features``.
+    node_position
+        The shape of each case [m].
+    tolerance
+        Largest asymmetry: distance of a node from its image, root mean square over nodes, beyond
+        what the trial model misses anyway, in the median case [m].
+    seed
+        Of the choice of cases.
+
+    Returns the asymmetry [m].
+    """
+    x, node_position = check_shapes(x, node_position, what="check_symmetry")
+    check_turnable(x, what="check_symmetry")
+    nodes = symmetry.source.shape[1]
+    if node_position.shape[1] != nodes:
+        raise InputError(
+            f"check_symmetry: the shapes have {node_position.shape[1]} nodes, the symmetry is of "
+            f"{nodes}. Make it of the same net."
+        )
+    if len(x) < FEW:
+        raise InputError(
+            f"check_symmetry: {len(x)} cases are too few; give at least {FEW}, or learn without "
+            "a symmetry."
+        )
+    rows = np.random.default_rng(seed).permutation(len(x))
+    held_out, training = np.split(rows[: TRAINING + HELD_OUT], [min(HELD_OUT, len(x) // 5)])
+    trial = ShapeGP(tolerance=COMPRESSION, restarts=0)
+    model = trial.fit(x[training], node_position[training], seed=seed)
+    missed = _errors_by_image(symmetry, model, x[held_out], node_position[held_out])
+    direct, by_image = np.median(missed[0]), np.median(np.sqrt(np.mean(missed[1:] ** 2, axis=0)))
+    asymmetry = float(np.sqrt(max(by_image**2 - direct**2, 0.0)))
+    if asymmetry > tolerance:
+        raise InputError(
+            f"check_symmetry: by their images the shapes are missed by {by_image:.3g} m, directly "
+            f"by {direct:.3g} m, so they are {asymmetry:.3g} m from symmetric, above the tolerance "
+            f"of {tolerance:g} m. The cage, its mooring or the campaign's directions are not "
+            "symmetric so: learn without a symmetry, or with a lesser one."
+        )
+    if direct > 4.0 * tolerance:
+        raise InputError(
+            f"check_symmetry: {len(training)} training cases give an error of {direct:.3g} m, too "
+            f"large to see an asymmetry of {tolerance:g} m. Give more cases, a larger "
+            "tolerance, or no symmetry."
+        )
+    return asymmetry
+
+
+def _errors_by_image(
+    symmetry: Symmetry, model: FittedShapeGP, x: NFeature, node_position: NNode3
+) -> Float[np.ndarray, "image n"]:
+    """Root mean square distance over the nodes of each case, by each image [m]."""
+    missed = []
+    for image in range(len(symmetry)):
+        answer = model.mean_of_nodes(symmetry.turned(x, image), EVERY)
+        distance = symmetry.moved(answer, symmetry.back(image)) - node_position
+        missed.append(np.sqrt(np.sum(distance**2, axis=2).mean(axis=1)))
+    return np.stack(missed)
 
 
 def _fold_cases(symmetry: Symmetry, x: NFeature, node_position: NNode3) -> tuple[NFeature, NNode3]:
