@@ -15,7 +15,7 @@ import numpy as np
 
 from seacage.cage import Cage
 from seacage.campaigns import TruthParameters, generated_current
-from seacage.campaigns._virtual_field._field import _settle, _Settled
+from seacage.campaigns._virtual_field._field import _settle
 from seacage.campaigns._virtual_field._responses import _DIRECTIONS, _GROWTHS, _SPEEDS, Responses
 from seacage.campaigns._virtual_field._timetable import reading_times
 from seacage.dynamics import Damage
@@ -55,8 +55,7 @@ def damaged_field(
     times = reading_times(buoy, every_s)
     nothing_held_out = np.zeros((1, len(ACE.sensor_names)))
     answers = kept_answers(damage)
-    field = _Settled(ACE, buoy, hidden, seed, times, answers, nothing_held_out)
-    return _settle(field, None).record
+    return _settle(ACE, buoy, times, answers, nothing_held_out, hidden=hidden, seed=seed).record
 
 
 def settled_answers(damage: str, hidden: TruthParameters, growth: float, seas: Sequence[SeaState]):

@@ -62,16 +62,8 @@ def generated_current(
     default sizes the mean speed is near 0.45 m/s and a few values pass 1 m/s. It is no
     place's climate: origin "virtual field".
 
-    Parameters
-    ----------
-    seed
-        Of phases, weather and noise.
-    start
-        Time of the first value, with its zone.
-    days
-        Length of the record.
-    every_s
-        Time between values [s].
+    ``seed``: of phases, weather and noise. ``start``: time of the first value, with its zone.
+    ``days``: length of the record. ``every_s``: time between values [s].
 
     Source: periods of the constituents: Doodson (1921).
     """
@@ -140,11 +132,9 @@ def _buoy_record(
     start: datetime, seconds: AnyPerRow, values: dict[str, np.ndarray], note: str
 ) -> Record:
     """A generated record, checked as any."""
-    time = instant(start) + (seconds * 1e6).astype("timedelta64[us]")
-    origin = Origin.VIRTUAL_FIELD
-    return check_record(
-        Record(stream="buoy-1", time=time, values=values, origin=origin, notes=(note,))
-    )
+    time, origin = instant(start) + (seconds * 1e6).astype("timedelta64[us]"), Origin.VIRTUAL_FIELD
+    record = Record(stream="buoy-1", time=time, values=values, origin=origin, notes=(note,))
+    return check_record(record)
 
 
 def waves_at_site(
@@ -155,16 +145,9 @@ def waves_at_site(
     The same days of the first year that has them all, lower by a factor; a sea that would then
     be too steep to stand has its period lengthened. The notes say what was done.
 
-    Parameters
-    ----------
-    record
-        Of waves: height, period and direction.
-    buoy_time
-        Of the buoy's record, UTC.
-    factor
-        Heights at the site over those of the record [-].
-    most
-        Highest Hs at the site [m].
+    ``record``: of waves: height, period and direction. ``buoy_time``: of the buoy's record, UTC.
+    ``factor``: heights at the site over those of the record [-]. ``most``: highest Hs at the site
+    [m].
 
     Raises InputError: a record without waves, or one that has those days in no year.
     """
@@ -212,6 +195,16 @@ def usable_waves(record: Record) -> tuple[AnyPerRow, Float[np.ndarray, "row 3"]]
             "A virtual field needs two at least; leave the waves out for a calm sea."
         )
     return record.time[kept], np.column_stack([record.values[key][kept] for key in _KEYS])
+
+
+def seconds_of(time: AnyPerRow, since: np.datetime64) -> Float[np.ndarray, " row"]:
+    """Seconds from a time to some others."""
+    return (time - since) / np.timedelta64(1, "s")
+
+
+def span_of(time: AnyPerRow) -> float:
+    """From the first of some times to the last [s]."""
+    return float((time[-1] - time[0]) / np.timedelta64(1, "s")) if len(time) else 0.0
 
 
 def _usable(record: Record) -> Bool[np.ndarray, " row"]:

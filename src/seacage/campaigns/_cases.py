@@ -33,47 +33,31 @@ _PIECE = 60.0  # least length of the pieces that a case on a mooring of its own 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulator:
-    """Simulator of a campaign's cases: all that their numbers depend on beside cage and sea.
+    """Simulator of a campaign's cases: all that their numbers depend on beside cage and sea."""
 
-    Parameters
-    ----------
-    method
-        "simulate": each sea state in time, with irregular waves of its own seed. "settle": the
-        equilibrium in its current, with the waves' mean loads.
-    law
-        Name of the load law of the netting, of seacage or installed; "morison", twine by twine,
-        in time only.
-    skin_friction, lift_factor
-        Changes of a screen law, as for ``settle``.
-    mooring
-        "catenary": frame ropes, buoys and anchor lines; or "springs" under the frame's corners.
-    ramp, spin_up
-        Time over which the waves grow, and time before the statistics begin, the ramp included [s].
-    time_step
-        [s].
-    quantile_levels
-        Of the quantiles over time [-].
-    second_moment
-        Whether to keep the second moment of all node coordinates over the campaign.
-    draw_mooring
-        Whether each case has a mooring of its own, ``Cage.drawn`` by a seed of the case. It is
-        simulated alone, in pieces of a minute and more.
-    parted
-        Names of lines that bear nothing. Each case starts from the equilibrium without them, where
-        one is found: what happens while they part is not in it.
-    """
-
+    # "simulate": each sea state in time, with irregular waves of its own seed. "settle": the
+    # equilibrium in its current, with the waves' mean loads.
     method: Literal["simulate", "settle"] = "simulate"
+    # Name of the load law of the netting, of seacage or installed; "morison", twine by twine, in
+    # time only
     law: str = "kristiansen-faltinsen"
+    # Changes of a screen law, as for ``settle``
     skin_friction: float | None = None
     lift_factor: float = 1.0
+    # "catenary": frame ropes, buoys and anchor lines; or "springs" under the frame's corners
     mooring: Mooring = "catenary"
+    # Time over which the waves grow, and time before the statistics begin, the ramp included [s]
     ramp: float = 60.0
     spin_up: float = 300.0
-    time_step: float = 0.002
-    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95)
+    time_step: float = 0.002  # [s]
+    quantile_levels: Sequence[float] = (0.05, 0.5, 0.95)  # of the quantiles over time [-]
+    # Whether to keep the second moment of all node coordinates over the campaign
     second_moment: bool = True
+    # Whether each case has a mooring of its own, ``Cage.drawn`` by a seed of the case. It is
+    # simulated alone, in pieces of a minute and more.
     draw_mooring: bool = False
+    # Names of lines that bear nothing. Each case starts from the equilibrium without them, where
+    # one is found: what happens while they part is not in it.
     parted: Sequence[str] = ()
 
     def __post_init__(self) -> None:
@@ -181,17 +165,9 @@ def _alike(block: CaseBlock) -> list[CaseBlock]:
 
 
 def _settle_block(block: CaseBlock) -> tuple[dict[str, np.ndarray], None]:
-    by, cage = block.simulator, _cage(block.cage_toml)
-    response = settle(
-        cage,
-        block.seas,
-        law=by.law,
-        skin_friction=by.skin_friction,
-        lift_factor=by.lift_factor,
-        mooring=by.mooring,
-        parted=by.parted,
-        mean_waves=True,
-    )
+    loads = ("law", "skin_friction", "lift_factor", "mooring", "parted")
+    settings = {name: getattr(block.simulator, name) for name in loads}
+    response = settle(_cage(block.cage_toml), block.seas, mean_waves=True, **settings)
     names = ("node_position", "bridle_tension", "net_force", "volume", "residual", "result")
     return {name: getattr(response, name) for name in names}, None
 

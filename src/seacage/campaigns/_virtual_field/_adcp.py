@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage import ocean
+from seacage.campaigns._buoy_records import seconds_of
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
 from seacage.campaigns._virtual_field._weather import Even, Weather, current_at_buoy, shear
 from seacage.conventions import compass
@@ -15,7 +16,6 @@ from seacage.records import Record, bin_keys, check_record
 
 Place = Literal["buoy", "cage"]
 RowBin2 = Float[np.ndarray, "row bin 2"]
-Step2 = Float[np.ndarray, "step 2"]
 
 BINS = np.arange(5.0, 31.0, 5.0)  # depth of the middle of each bin [m]
 # Errors, as makers state them of ten-minute means of profilers of 400 to 600 kHz: of each component
@@ -56,7 +56,7 @@ def bins_of_settled(
     that the current at the cage was drawn by, begun anew.
     """
     mean, sheared = at_cage
-    second = _seconds(buoy)
+    second = seconds_of(buoy.time, buoy.time[0])
     if place == "cage":
         return ocean.over_depth(mean.at(second), sheared.at(second), BINS)
     surface, arrives = current_at_buoy(buoy, second, hidden=hidden, rng=rng)
@@ -77,7 +77,7 @@ def bins_of_simulated(
 
     ``weather``: at the cage. ``rng``: as of ``bins_of_settled``.
     """
-    second = _seconds(buoy)
+    second = seconds_of(buoy.time, buoy.time[0])
     if place == "cage":
         levels = np.array([weather.current(one) for one in second.tolist()])
     else:
@@ -92,10 +92,6 @@ def bins_of_simulated(
         )  # fmt: skip
     share = [np.interp(BINS, weather.level_depth, unit) for unit in np.eye(len(levels[0]))]
     return np.einsum("tlx,lb->tbx", levels, np.array(share))
-
-
-def _seconds(buoy: Record) -> Float[np.ndarray, " row"]:
-    return (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
 
 
 def _at_distance(sheared: Even, hidden: TruthParameters, seed: int) -> Even:

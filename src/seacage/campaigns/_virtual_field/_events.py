@@ -40,26 +40,16 @@ class Event:
     silent      buoy-1          the buoy, or the sensor, says nothing
     ==========  ==============  ========================================================
 
-    Parameters
-    ----------
-    kind, target
-        As in the table.
-    at
-        When it begins; any zone, kept as UTC.
-    size
-        Of a hole [panels; None for 2], of a drift [m/day; None for 0.1]; others have none.
-    until
-        When what is stuck or silent speaks again; None for never.
-
     Raises InputError: an unknown kind, a time without its zone, a size or an end that it cannot
     have.
     """
 
     kind: str
     target: str
-    at: datetime
+    at: datetime  # when it begins; any zone, kept as UTC
+    # Of a hole [panels; None for 2], of a drift [m/day; None for 0.1]; others have none
     size: float | None = None
-    until: datetime | None = None
+    until: datetime | None = None  # when what is stuck or silent speaks again; None for never
 
     def __post_init__(self) -> None:
         if self.kind not in _KINDS:

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 import numpy as np
 from jaxtyping import Float, Shaped
 
 from seacage.cage import Cage
+from seacage.campaigns._buoy_records import seconds_of
 from seacage.campaigns._virtual_field import _sensors
 from seacage.campaigns._virtual_field._adcp import (
     Place,
@@ -83,37 +84,22 @@ def virtual_field(
     a shear its mean over the net's depth is kept, and the buoy's stream passes through as it came.
     With a profile the settled cage feels the shear itself, to first order.
 
-    Parameters
-    ----------
-    cage
-        As drawn; its sensors are the ones simulated.
-    buoy
-        What the buoy measured, generated or real. Its waves are those at the cage if it
-        carries any.
-    hidden
-        How the truth differs.
-    seed
-        Of weather, noise and outages. The hidden cage does not depend on it.
-    method
-        "simulate" takes hours of computing for weeks, "settle" minutes.
-    waves
-        Beside the buoy's current; None for the buoy's own, or none.
-    events
-        What goes wrong, and when.
-    every_s
-        Time between readings [s]; None for 2 s simulated, 60 s settled.
-    timetable
-        How simulated time is cut; None for ``Timetable.over`` the buoy's record.
-    profile
-        Where an ADCP measures the current at several depths, which the buoy's stream then carries:
-        at the buoy or at the cage. None for no ADCP.
-    kept
-        Folder that keeps finished stretches, or the settled grid, for another call: after a
-        stop it goes on from them, to the same bits. None begins anew.
-    workers
-        Processes; None for one per available core. The numbers do not depend on it.
-    progress
-        Called as ("virtual field", done, total), in simulated hours or in equilibria.
+    ``cage``: as drawn; its sensors are the ones simulated.
+    ``buoy``: what the buoy measured, generated or real. Its waves are those at the cage if it
+    carries any.
+    ``hidden``: how the truth differs.
+    ``seed``: of weather, noise and outages. The hidden cage does not depend on it.
+    ``method``: "simulate" takes hours of computing for weeks, "settle" minutes.
+    ``waves``: beside the buoy's current; None for the buoy's own, or none.
+    ``events``: what goes wrong, and when.
+    ``every_s``: time between readings [s]; None for 2 s simulated, 60 s settled.
+    ``timetable``: how simulated time is cut; None for ``Timetable.over`` the buoy's record.
+    ``profile``: where an ADCP measures the current at several depths, which the buoy's stream then
+    carries: at the buoy or at the cage. None for no ADCP.
+    ``kept``: folder that keeps finished stretches, or the settled grid, for another call: after a
+    stop it goes on from them, to the same bits. None begins anew.
+    ``workers``: processes; None for one per available core. The numbers do not depend on it.
+    ``progress``: called as ("virtual field", done, total), in simulated hours or in equilibria.
 
     Raises InputError: a record too short, events that cannot be, ``kept`` of another field; waves,
     events or a timetable for a settled field.
@@ -133,19 +119,7 @@ def virtual_field(
     with _folder(kept) as store:
         options: dict[str, Any] = {"workers": workers, "progress": progress}
         grid = true_responses(cage, hidden, sheared=bool(profile), store=Path(store), **options)
-    return _settle(_Settled(cage, buoy, hidden, seed, time, *grid), profile)
-
-
-class _Settled(NamedTuple):
-    """A settled field before its sensors, with the answers of its cage and their errors."""
-
-    cage: Cage
-    buoy: Record
-    hidden: TruthParameters
-    seed: int
-    time: Shaped[np.ndarray, " t"]
-    answers: Responses
-    error: Float[np.ndarray, "case sensor"]
+    return _settle(cage, buoy, time, *grid, hidden=hidden, seed=seed, profile=profile)
 
 
 def virtual_field_share(
@@ -181,10 +155,10 @@ def _request(
     **truth: Any,
 ) -> FieldRequest:
     """A request whose readings and stretches are as given or as usual."""
-    time = reading_times(buoy, every_s, usual_s=2.0)
+    time = reading_times(buoy, every_s)
     timetable = timetable or Timetable.over(buoy, refined=hidden.netting.refined)
-    truth = {"waves": None, "events": (), "hidden": hidden, **truth}
-    return FieldRequest(cage=cage, buoy=buoy, time=time, timetable=timetable, **truth)
+    truth |= {"hidden": hidden, "time": time, "timetable": timetable}
+    return FieldRequest(cage=cage, buoy=buoy, **truth)
 
 
 def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:
@@ -248,11 +222,20 @@ def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _settle(field: _Settled, profile: Place | None) -> VirtualField:
+def _settle(
+    cage: Cage,
+    buoy: Record,
+    time: Shaped[np.ndarray, " t"],
+    answers: Responses,
+    error: Float[np.ndarray, "case sensor"],  # of the answers
+    *,
+    hidden: TruthParameters,
+    seed: int,
+    profile: Place | None = None,
+) -> VirtualField:
     """The current as it is, its answers, and what the sensors make of them."""
-    cage, buoy, hidden, seed, time, answers, error = field
     _, *own = np.random.default_rng(seed).spawn(1 + len(cage.sensor_names))
-    seconds = (time - buoy.time[0]) / np.timedelta64(1, "s")
+    seconds = seconds_of(time, buoy.time[0])
     velocity = _current_over_net(buoy, seconds, hidden=hidden, seed=seed)
     step = float(seconds[1] - seconds[0])
     sheared = None if profile is None else shear(hidden.profile, len(seconds), step, seed=seed)
@@ -297,8 +280,8 @@ def true_nets(
     ``time``: of the field's readings, as it reads every minute. All others: as for
     ``virtual_field``, which has filled ``kept`` with the equilibria that are interpolated here.
     """
-    seconds = (reading_times(buoy, None, usual_s=60.0) - buoy.time[0]) / np.timedelta64(1, "s")
-    rows = np.searchsorted(seconds, (time - buoy.time[0]) / np.timedelta64(1, "s"))
+    seconds = seconds_of(reading_times(buoy, None, usual_s=60.0), buoy.time[0])
+    rows = np.searchsorted(seconds, seconds_of(time, buoy.time[0]))
     velocity = _current_over_net(buoy, seconds, hidden=hidden, seed=seed)[rows]
     answers, _ = true_responses(
         cage,

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from jaxtyping import Float, Shaped
 
-from seacage.campaigns._buoy_records import wandering
+from seacage.campaigns._buoy_records import seconds_of, wandering
 from seacage.campaigns._virtual_field._events import Event
 from seacage.campaigns._virtual_field._spells import Spells
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
@@ -27,7 +27,7 @@ def radio_silence(hidden: TruthParameters, time: Times, rng: np.random.Generator
 
 def air_pressure(hidden: TruthParameters, time: Times, rng: np.random.Generator) -> Values:
     """How far the air's pressure is off its mean at some times, for all sensors alike [hPa]."""
-    errors, seconds = hidden.depth, _seconds(time)
+    errors, seconds = hidden.depth, seconds_of(time, time[0])
     grid = np.arange(0.0, seconds[-1] + 2.0 * _WEATHER_STEP, _WEATHER_STEP)
     sd, memory = errors.air_pressure_sd_hpa, errors.air_pressure_memory_s
     weather = wandering(rng, len(grid), sd=sd, step_s=_WEATHER_STEP, memory_s=memory)
@@ -66,7 +66,7 @@ def sense(
         values = gain * exact + bias + noise.normal(scale=cell.noise_sd_kn, size=len(exact))
         size, alive = cell.spike_kn, Spells.at_shares(truth.time, cell.windows)
     else:
-        errors, seconds = hidden.depth, _seconds(truth.time)
+        errors, seconds = hidden.depth, seconds_of(truth.time, truth.time[0])
         drift = noise.choice([-1.0, 1.0]) * errors.drift_m_week * seconds / _WEEK
         values = exact + drift + noise.normal(scale=errors.noise_sd_m, size=len(exact))
         values += 0.0 if wave_head is None else wave_head
@@ -93,10 +93,6 @@ def receive_buoy(
     """
     sizes = {"current_speed_m_s": hidden.buoy.spike_m_s}
     return _receive(replace(buoy, flags={}), events, sizes, hidden, rng, silence=silence)
-
-
-def _seconds(time: Times) -> Values:
-    return (time - time[0]) / np.timedelta64(1, "s")
 
 
 def _receive(

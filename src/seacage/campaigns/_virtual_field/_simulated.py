@@ -36,8 +36,8 @@ class FieldRequest:
     time: Shaped[np.ndarray, " reading"]  # of the readings, in even steps
     hidden: TruthParameters
     seed: int
-    waves: Record | None
-    events: Sequence[Event]
+    waves: Record | None = None
+    events: Sequence[Event] = ()
     timetable: Timetable
 
     def __post_init__(self) -> None:

@@ -7,7 +7,10 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Float, Shaped
 
+from seacage.campaigns._buoy_records import span_of
+
 AnyPerT = Shaped[np.ndarray, " t"]
+PerSpell = Float[np.ndarray, " spell"]
 
 _HOUR, _WEEK = 3600.0, 604800.0
 
@@ -25,7 +28,7 @@ class Spells:
         cls, time: AnyPerT, rng: np.random.Generator, *, per_week: float, mean_h: float = 0.0
     ) -> Self:
         """Spells that begin by chance between some times and last for exponential times."""
-        span = _span(time)
+        span = span_of(time)
         start = rng.uniform(0.0, span, size=rng.poisson(per_week * span / _WEEK))
         return cls._after(time[0], start, rng.exponential(mean_h * _HOUR, size=len(start)))
 
@@ -35,17 +38,11 @@ class Spells:
 
         ``windows``: share [-] and length [h] of each.
         """
-        start = np.array([share * _span(time) for share, _ in windows])
-        length = np.array([hours * _HOUR for _, hours in windows])
-        return cls._after(time[0], start, length)
+        share, hours = np.reshape(windows, (-1, 2)).T
+        return cls._after(time[0], share * span_of(time), hours * _HOUR)
 
     @classmethod
-    def _after(
-        cls,
-        first: np.datetime64,
-        start: Float[np.ndarray, " spell"],
-        length: Float[np.ndarray, " spell"],
-    ) -> Self:
+    def _after(cls, first: np.datetime64, start: PerSpell, length: PerSpell) -> Self:
         begin, end = (
             first + np.round(seconds * 1e6).astype("timedelta64[us]")
             for seconds in (start, start + length)
@@ -63,7 +60,3 @@ class Spells:
         for rows in self.rows(time):
             covered[rows] = True
         return covered
-
-
-def _span(time: AnyPerT) -> float:
-    return float((time[-1] - time[0]) / np.timedelta64(1, "s"))

@@ -9,6 +9,7 @@ from typing import Self
 import numpy as np
 from jaxtyping import Bool, Shaped
 
+from seacage.campaigns._buoy_records import span_of
 from seacage.conventions import InputError, count_times
 from seacage.dynamics import Damage, simulation_lanes
 from seacage.records import Record
@@ -18,28 +19,16 @@ LONGEST_STEP = 0.002  # of a net that is not refined, as in the low fidelity [s]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timetable:
-    """Stretches of time in which a virtual field is simulated, many side by side.
+    """Stretches of time in which a virtual field is simulated, many side by side."""
 
-    Parameters
-    ----------
-    stretch
-        Length of each [s].
-    spin_up
-        Simulated before each, and not counted [s].
-    mean
-        Over which shape and tensions are averaged for the truth [s]; a stretch is a whole
-        number of it.
-    time_step
-        At most [s].
-    one_in
-        Simulate one stretch in so many; the rest are gaps. The first, the last, those that
-        begin with a damage and those in which the shackles live are always simulated.
-    """
-
-    stretch: float = 3600.0
-    spin_up: float = 300.0
+    stretch: float = 3600.0  # length of each [s]
+    spin_up: float = 300.0  # simulated before each, and not counted [s]
+    # Over which shape and tensions are averaged for the truth [s]; a stretch is a whole number of
+    # it
     mean: float = 600.0
-    time_step: float = 0.001
+    time_step: float = 0.001  # at most [s]
+    # Simulate one stretch in so many; the rest are gaps. The first, the last, those that begin with
+    # a damage and those in which the shackles live are always simulated.
     one_in: int = 1
 
     def __post_init__(self) -> None:
@@ -58,9 +47,9 @@ class Timetable:
         ``refined``: of the true net (``NettingTruth``); on longer bars a longer step is as stable.
         """
         plain = cls(one_in=one_in, time_step=LONGEST_STEP / refined)
-        lanes = 2 * simulation_lanes()
-        rounds = max(1, round(_span(buoy) / (lanes * plain.stretch)))
-        means = math.ceil(_span(buoy) / (rounds * lanes * plain.mean) - 1e-9)
+        lanes, span = 2 * simulation_lanes(), span_of(buoy.time)
+        rounds = max(1, round(span / (lanes * plain.stretch)))
+        means = math.ceil(span / (rounds * lanes * plain.mean) - 1e-9)
         return replace(plain, stretch=max(means, 1) * plain.mean)
 
     def readings(self, every: float) -> tuple[int, int]:
@@ -96,7 +85,7 @@ def reading_times(
 
     Raises InputError: a record or a step that leaves no two.
     """
-    span, every_s = _span(buoy), usual_s if every_s is None else every_s
+    span, every_s = span_of(buoy.time), usual_s if every_s is None else every_s
     if not 0.0 < every_s < span:
         raise InputError(
             f"virtual_field: {buoy.stream} spans {span:g} s, which holds no two readings "
@@ -139,8 +128,3 @@ def side_by_side(stretches: Sequence[Stretch], most: int) -> list[tuple[Stretch,
     alike = groupby(stretches, key=lambda one: (one.damaged, one.breaking))
     groups = [tuple(group) for _, group in alike]
     return [group[at : at + most] for group in groups for at in range(0, len(group), most)]
-
-
-def _span(buoy: Record) -> float:
-    """From a buoy's first word to its last [s]."""
-    return float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s")) if len(buoy) else 0.0

@@ -9,7 +9,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.cage import Cage
-from seacage.campaigns._buoy_records import generated_current
+from seacage.campaigns._buoy_records import generated_current, seconds_of
 from seacage.campaigns._cases import CaseBlock, answer_block, software_version
 from seacage.campaigns._pool import map_tasks
 from seacage.campaigns._virtual_field._truth_parameters import TruthParameters
@@ -58,16 +58,8 @@ def true_shapes(
     for a record's own are mostly slow. Left out, as in every settled field: waves, the current's
     profile, and that a cage takes time to follow. Growth is rounded to a quarter of the whole.
 
-    Parameters
-    ----------
-    cage, hidden, workers
-        As for ``virtual_field``.
-    seeds
-        One record each.
-    cases
-        Times of each record.
-    progress
-        Called as ("shape error", done, total) in cases.
+    ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``seeds``: one record each.
+    ``cases``: times of each record. ``progress``: called as ("shape error", done, total) in cases.
     """
     if cases < 1 or not seeds:
         raise InputError(f"true_shapes: {len(seeds)} seeds of {cases} cases hold none. Ask for 1.")
@@ -95,7 +87,7 @@ def _moments(hidden: TruthParameters, seed: int, cases: int) -> _Moments:
     buoy = generated_current(seed, start=_START, days=_DAYS)
     turned = (buoy.values["current_to_deg"] + turn.uniform(0.0, 360.0)) % 360.0
     buoy = replace(buoy, values={**buoy.values, "current_to_deg": turned})
-    at = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
+    at = seconds_of(buoy.time, buoy.time[0])
     seconds = np.arange(0.0, at[-1] + _EVERY_S, _EVERY_S)
     current = current_at_cage(buoy, seconds, hidden=built, rng=weather)
     speed = buoy.values["current_speed_m_s"]

@@ -47,11 +47,15 @@ class FoulingTruth:
         age = day - begun[np.searchsorted(begun[1:], day, side="right")]
         return 1.0 / (1.0 + np.exp(-(age - self.half_grown_days) / self.growth_days))
 
+    def shallow(self, growth: float) -> float:
+        """Solidity added above the boundary depth [-]."""
+        return self.shallow_least + growth * (self.shallow_most - self.shallow_least)
+
     def solidity_and_drag(
         self, growth: float, depth: Float[np.ndarray, " panel"]
     ) -> tuple[Float[np.ndarray, " panel"], Float[np.ndarray, " panel"]]:
         """Solidity added at some depths [m], and the drag factor of what grew there [-]."""
-        shallow = self.shallow_least + growth * (self.shallow_most - self.shallow_least)
+        shallow = self.shallow(growth)
         solidity = np.where(depth < self.boundary_depth_m, shallow, self.deep_share * shallow)
         soft = 1.0 - (1.0 - self.soft_drag_factor) * growth
         return solidity, np.full(len(depth), soft)
@@ -262,18 +266,13 @@ class TruthParameters:
     def of_family(cls, number: int, *, water: Water = "tame", unseal: bool = False) -> Self:
         """One of a family of hidden cages and waters, drawn from the ranges of ``family.toml``.
 
-        Parameters
-        ----------
-        number
-            1 to 60 for development; 101 to 110 are sealed, so that no setting is ever fitted to
-            them; 201 to 204 lie outside the ranges: another screen law, a current sheared twice,
-            an uneven frame, a sinker tube that lost its weight on one side; 301 to 400 are fresh,
-            for figures on cages that chose no setting.
-        water
-            "tame" as on the shelf, "coastal", with the shear that two ADCPs measured, or "shallow",
-            as the one in the shallower water did. Of one number all have the same cage.
-        unseal
-            Give a sealed one.
+        ``number``: 1 to 60 for development; 101 to 110 are sealed, so that no setting is ever
+        fitted to them; 201 to 204 lie outside the ranges: another screen law, a current sheared
+        twice, an uneven frame, a sinker tube that lost its weight on one side; 301 to 400 are
+        fresh, for figures on cages that chose no setting.
+        ``water``: "tame" as on the shelf, "coastal", with the shear that two ADCPs measured, or
+        "shallow", as the one in the shallower water did. Of one number all have the same cage.
+        ``unseal``: give a sealed one.
 
         Raises InputError: a number or a water that is none, or one that is sealed.
         """
@@ -300,8 +299,7 @@ class TruthParameters:
 
     def true_cage(self, cage: Cage, growth: float) -> Cage:
         """The cage as it truly is, its net grown by a share of the whole growth, 0 to 1."""
-        own = self.fouling
-        shallow = own.shallow_least + growth * (own.shallow_most - own.shallow_least)
+        own, shallow = self.fouling, self.fouling.shallow(growth)
         deep, boundary = own.deep_share * shallow, own.boundary_depth_m
         return self._build(cage).fouled(shallow=shallow, deep=deep, boundary_depth=boundary)
 

@@ -2,13 +2,20 @@
 
 import math
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Self
 
 import numpy as np
 from jaxtyping import Float
 
 from seacage import ocean
-from seacage.campaigns._buoy_records import shortest_period, usable_waves, wandering
+from seacage.campaigns._buoy_records import (
+    seconds_of,
+    shortest_period,
+    span_of,
+    usable_waves,
+    wandering,
+)
 from seacage.campaigns._virtual_field._truth_parameters import (
     FoulingTruth,
     ProfileTruth,
@@ -197,7 +204,7 @@ def true_weather(
     Raises InputError: fewer than two usable currents or waves.
     """
     water, deep, surface = water_chance(seed)
-    span = float((buoy.time[-1] - buoy.time[0]) / np.timedelta64(1, "s"))
+    span = span_of(buoy.time)
     seconds = np.arange(math.ceil(span / every_s) + 1) * every_s
     current = Even(step=every_s, values=current_at_cage(buoy, seconds, hidden=hidden, rng=water))
     minutes = np.arange(math.ceil(span / _MINUTE) + 1) * _MINUTE
@@ -208,16 +215,13 @@ def true_weather(
     draw = ocean.WaveDraw.sample(surface, components=components, spreading=hidden.waves.spreading)
     sea = _sea(waves, buoy.time[0], minutes)
     phase = _phase(draw, sea, current.at(minutes[:-1] + _MINUTE / 2.0), depth)
+    by_minute = partial(Even, step=_MINUTE)
+    sea, phase = by_minute(values=sea), by_minute(values=phase)
     return Weather(
         surface=current,
-        swing=Even(step=_MINUTE, values=swing),
-        shear=Even(step=_MINUTE, values=sheared) if hidden.profile.shear_sd_m_s else None,
-        sea=TrueWaves(
-            draw=draw,
-            sea=Even(step=_MINUTE, values=sea),
-            phase=Even(step=_MINUTE, values=phase),
-            depth=depth,
-        ),
+        swing=by_minute(values=swing),
+        shear=by_minute(values=sheared) if hidden.profile.shear_sd_m_s else None,
+        sea=TrueWaves(draw=draw, sea=sea, phase=phase, depth=depth),
         profile=hidden.profile,
         fouling=hidden.fouling,
     )
@@ -245,7 +249,7 @@ def _sea(waves: Record | None, start: np.datetime64, seconds: PerRow) -> Float[n
     time, rows = usable_waves(waves)
     hs, tp, came = rows.T
     known = np.column_stack([hs, tp, -towards(np.ones(len(came)), came)])
-    sea = _between(seconds, (time - start) / np.timedelta64(1, "s"), known)
+    sea = _between(seconds, seconds_of(time, start), known)
     sea[:, 1] = np.maximum(np.maximum(sea[:, 1], shortest_period(sea[:, 0])), _RIPPLE)
     return sea
 
@@ -307,10 +311,16 @@ def current_at_buoy(
 def _true_at_buoy(
     buoy: Record, *, hidden: TruthParameters, rng: np.random.Generator
 ) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
-    there, reported = _buoy_series(buoy)
-    speed = np.linalg.norm(reported, axis=1)
-    noise = hidden.buoy
-    return there, towards(
+    """Times since the first row [s] and currents of the usable rows, without the buoy's error."""
+    usable = buoy.usable("current_speed_m_s") & buoy.usable("current_to_deg")
+    if np.sum(usable) < 2:
+        raise InputError(
+            f"{buoy.stream}: {np.sum(usable)} usable currents in {len(buoy)} rows. "
+            "A virtual field needs two at least."
+        )
+    reported = towards(buoy.values["current_speed_m_s"], buoy.values["current_to_deg"])[usable]
+    speed, noise = np.linalg.norm(reported, axis=1), hidden.buoy
+    return seconds_of(buoy.time[usable], buoy.time[0]), towards(
         np.maximum(speed - rng.normal(scale=noise.speed_sd_m_s, size=len(speed)), 0.0),
         compass(reported) - rng.normal(scale=noise.direction_sd_deg, size=len(speed)),
     )
@@ -319,19 +329,6 @@ def _true_at_buoy(
 def _lag(current: Float[np.ndarray, "t 2"], hidden: TruthParameters) -> PerT:
     way, speed = hidden.current, np.linalg.norm(current, axis=1)
     return np.minimum(way.distance_m / np.maximum(speed, 1e-6), way.lag_most_s)
-
-
-def _buoy_series(buoy: Record) -> tuple[PerRow, Float[np.ndarray, "row 2"]]:
-    """Times since the first row [s] and currents of the usable rows [m/s]."""
-    usable = buoy.usable("current_speed_m_s") & buoy.usable("current_to_deg")
-    if np.sum(usable) < 2:
-        raise InputError(
-            f"{buoy.stream}: {np.sum(usable)} usable currents in {len(buoy)} rows. "
-            "A virtual field needs two at least."
-        )
-    seconds = (buoy.time - buoy.time[0]) / np.timedelta64(1, "s")
-    velocity = towards(buoy.values["current_speed_m_s"], buoy.values["current_to_deg"])
-    return seconds[usable], velocity[usable]
 
 
 def _between(
