@@ -78,17 +78,10 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 200, depth: floa
     Gaussian sea by 3.0 %. Left out: spreading of direction, and waves shorter than a quarter of
     the peak's period. Without waves every amplitude is 0.
 
-    Parameters
-    ----------
-    sea
-        What to realise.
-    seed
-        The same seed gives the same sea.
-    components
-        How many waves. With 200 the largest crest of half an hour is that of a Gaussian sea
-        within 1 % in the mean; with 30 it is 3 % low.
-    depth
-        Of the water [m].
+    ``sea``: to realise. ``seed``: the same gives the same waves.
+    ``components``: how many waves. With 200 the largest crest of half an hour is that of a Gaussian
+    sea within 1 % in the mean; with 30 it is 3 % low.
+    ``depth``: of the water [m].
     """
     random = np.random.default_rng(seed)
     edges = frequency_bins(sea, components)
@@ -127,24 +120,14 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
 
     Raises InputError: a height, period or depth that is no positive number, or a wave that breaks.
 
-    Parameters
-    ----------
-    height
-        Crest to trough [m].
-    period
-        [s].
-    wave_from
-        Where it comes from, clockwise from true north [deg].
-    depth
-        Of the water [m].
+    ``height``: crest to trough [m]. ``period``: [s].
+    ``wave_from``: where it comes from, clockwise from true north [deg].
+    ``depth``: of the water [m].
 
     Source: Miche (1944): a wave breaks above H = 0.142 L tanh(k depth).
     """
-    for name, value, unit in (
-        ("height", height, "m"),
-        ("period", period, "s"),
-        ("depth", depth, "m"),
-    ):
+    given = (("height", height, "m"), ("period", period, "s"), ("depth", depth, "m"))
+    for name, value, unit in given:
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(
                 f"regular_wave: {name} = {value:g} {unit} is not a positive, finite number."
@@ -226,11 +209,8 @@ def _angle(waves: Waves, position: N2, time: Float[np.ndarray, "*#n"]) -> NWave:
 def pressure_head(waves: Waves, position: N3, time: Float[np.ndarray, "*#n"]) -> PerN:
     """Wave pressure in the water, as metres of water [m].
 
-    Below still water as in linear theory, above it as at still water.
-
-    ``waves``: the sea.
-    ``position``: east, north, up from still water [m].
-    ``time``: broadcast against the positions [s].
+    Below still water as in linear theory, above it as at still water; arguments as in
+    ``water_motion``.
 
     Source: Airy (1845), finite depth.
     """

@@ -27,30 +27,17 @@ class SeaState:
 
     Raises InputError: a negative, infinite or missing number, a direction outside [0, 360], or a
     sea steeper than ``steepness_limit``.
-
-    Parameters
-    ----------
-    current_speed
-        Mean over depth [m/s], at most ``MAX_CURRENT_SPEED``.
-    current_to
-        Where the current goes, clockwise from true north [deg].
-    hs
-        Significant wave height [m]; 0 means no waves, and ``tp`` is then ignored.
-    tp
-        Peak period [s]; None means 5 sqrt(hs), the steepest sea the default spectrum takes.
-    wave_from
-        Where the waves come from, clockwise from true north [deg].
-    current_shear, shear_to
-        Length of the current's shear over depth, as ``over_depth`` takes it [m/s], and where it
-        points, clockwise from true north [deg]; a uniform current by default.
     """
 
-    current_speed: float
-    current_to: float
-    hs: float = 0.0
+    current_speed: float  # mean over depth [m/s], at most ``MAX_CURRENT_SPEED``
+    current_to: float  # where the current goes, clockwise from true north [deg]
+    hs: float = 0.0  # significant wave height [m]; 0 means no waves, and ``tp`` is then ignored
+    # Peak period [s]; None means 5 sqrt(hs), the steepest sea the default spectrum takes
     tp: float | None = None
-    wave_from: float = 0.0
-    # Left out of the text, which the hash of a campaign is of
+    wave_from: float = 0.0  # where the waves come from, clockwise from true north [deg]
+    # Length of the current's shear over depth, as ``over_depth`` takes it [m/s], and where it
+    # points, clockwise from true north [deg]; a uniform current by default. Left out of the text,
+    # which the hash of a campaign is of
     current_shear: float = field(default=0.0, repr=False)
     shear_to: float = field(default=0.0, repr=False)
 

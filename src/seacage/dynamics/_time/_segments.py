@@ -136,13 +136,14 @@ class SegmentBatch:
 
     def meets(self, step: int) -> None:
         """The weather of a sample's time; what changes slowly is looked at now and then."""
-        now = self.starts + step * self._course.every
-        current = self._current(now + self._course.every / 2.0)
+        every = self._course.every
+        now = self.starts + step * every
+        current = self._current(now + every / 2.0)
         self.march.set_current(current)
-        since = (step + self._course.spin_up) * self._course.every
-        if _due(since, WAVES_EVERY, self._course.every):
+        since = (step + self._course.spin_up) * every
+        if since % WAVES_EVERY < every:
             self.march.set_waves(self._waves(now))
-        if _due(since, WAKE_EVERY, self._course.every):
+        if since % WAKE_EVERY < every:
             self._solidity, self._drag_factor = self._netting(now)
             self._relax_wake(current.mean(axis=1))
             self.march.set_net(self._law())
@@ -193,11 +194,6 @@ class SegmentBatch:
         across = 2.0 * self.cage.collar.radius
         share = np.minimum(WAKE_EVERY * np.linalg.norm(current, axis=1) / across, 1.0)
         self._wake = self._wake + share[:, None] * (self._in_sight(net, current) - self._wake)
-
-
-def _due(since: float, every: float, step: float) -> bool:
-    """Whether a look that comes at regular times comes in this step."""
-    return since % every < step
 
 
 def _start(cage: Cage, assembly: Assembly, current: Stretch2) -> StretchNode3:

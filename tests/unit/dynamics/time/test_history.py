@@ -7,7 +7,7 @@ import pytest
 
 from line_loads import bare_line_loads, bare_loads
 from seacage.dynamics import History, Statistics
-from seacage.dynamics._time._reduction import _moments, _plain_statistics, _quantiles, stack
+from seacage.dynamics._time._history import _moments, _plain_statistics, _quantiles, stack
 
 LEVELS = np.array([0.0, 0.05, 0.5, 0.95, 1.0])
 
