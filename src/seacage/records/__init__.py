@@ -53,8 +53,8 @@ from seacage.records._quality._limits import (
     Season,
     Steadiness,
     groups_of,
+    read_limits,
 )
-from seacage.records._quality._limits_file import read_limits
 from seacage.records._readers._cf import NetcdfMap
 from seacage.records._readers._column_map import Column, ColumnMap, shipped_maps
 from seacage.records._readers._csv import check_rows, read_rows

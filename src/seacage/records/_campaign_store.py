@@ -28,7 +28,6 @@ NOT_RUN = -1
 # Group of the second moments of single blocks, there until the campaign is finished
 _BLOCKS = "blocks"
 
-
 _CASE = ("case",)
 
 # The sea state of each case, with the names of ``SeaState``
@@ -170,11 +169,9 @@ def fill_campaign(
         raise RecordError(f"{path}: there is something already. Give another name, or delete it.")
     known = SHEAR | _variables(in_time=True, quantiles=True, moment=False, lines=True)
     variables = {name: known[name] for name in values}
-    size = {
-        dim: length
-        for name, variable in variables.items()
-        for dim, length in zip(variable.dims, values[name].shape, strict=True)
-    }
+    size = dict[str, int]()
+    for name, variable in variables.items():
+        size |= zip(variable.dims, values[name].shape, strict=True)
     _make(path, variables, size, chunk=size, values=values, attributes=attributes)
 
 
@@ -206,7 +203,11 @@ def _make(
         # After the metadata was gathered, for they will go again
         if "second_moment" in variables:
             _create_block_moments(group, size["block"], size["coordinate"])
-        _move(unborn, path)
+        try:
+            unborn.rename(path)
+        except OSError:
+            if not path.is_dir():  # else another process made it meanwhile
+                raise
     finally:
         shutil.rmtree(unborn, ignore_errors=True)
 
@@ -293,19 +294,13 @@ def _array(path: Path, name: str) -> Any:
 def _variables(*, in_time: bool, quantiles: bool, moment: bool, lines: bool) -> dict[str, Variable]:
     """Of a campaign of equilibria, or of one in time."""
     variables = {**SEA, **MEAN, "result": _RESULT, "core_seconds": _CORE_SECONDS}
-    if in_time:
-        variables |= {"wave_seed": _WAVE_SEED, "quantile": _QUANTILE, **SPREAD}
-    else:
-        variables["residual"] = _RESIDUAL
+    in_waves = {"wave_seed": _WAVE_SEED, "quantile": _QUANTILE, **SPREAD}
+    variables |= in_waves if in_time else {"residual": _RESIDUAL}
     if lines:
         variables |= _LOADS | {f"line_{name}": line_variable(name) for name in CONSTANT}
     if moment:
         variables["second_moment"] = _SECOND_MOMENT
-    return {
-        name: variable
-        for name, variable in variables.items()
-        if quantiles or "quantile" not in variable.dims
-    }
+    return {n: one for n, one in variables.items() if quantiles or "quantile" not in one.dims}
 
 
 def _create_array(
@@ -357,15 +352,6 @@ def _sum_up(path: Path, *, answers: int) -> None:
 def _beside(path: Path, kind: str) -> Path:
     """A hidden neighbour of a store, with a name that no other process has."""
     return path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.{kind}")
-
-
-def _move(unborn: Path, path: Path) -> None:
-    """Give a store its name, unless another has it."""
-    try:
-        unborn.rename(path)
-    except OSError:
-        if not path.is_dir():
-            raise
 
 
 def _attributes(name: str, variable: Variable) -> dict[str, Any]:

@@ -38,7 +38,6 @@ _SMALL_BYTES = 16 << 20  # what any file may ask for, however small
 # Texts of any length that one variable may hold: each of them can be the same long one
 _MOST_TEXTS = 4096
 
-
 # Of statistics over time, by CF's words; it has none for quantiles but the median
 CELL_METHODS = {
     "mean": "time: mean",

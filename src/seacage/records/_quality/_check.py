@@ -245,13 +245,7 @@ def _amendments(
 
 def _sentence(stream: str, values: Mapping[str, float], finding: Finding) -> str:
     key, flag, why, _ = finding
+    flagged = f"Flagged {flag} ({flag.name.lower()})"
     if flag == Flag.MISSING:
-        return f"{stream}: {key} {why}. Flagged {flag} ({_word(flag)})."
-    return (
-        f"{stream}: {key} = {values[key]:g} {why}. "
-        f"Flagged {flag} ({_word(flag)}); the raw value is kept."
-    )
-
-
-def _word(flag: Flag) -> str:
-    return flag.name.lower().replace("_", " ")
+        return f"{stream}: {key} {why}. {flagged}."
+    return f"{stream}: {key} = {values[key]:g} {why}. {flagged}; the raw value is kept."

@@ -1,5 +1,8 @@
 """The wizard: what a foreign file seems to be, and a map of it to edit, with nothing guessed."""
 
+# xarray leaves parts of its signatures untyped.
+# pyright: reportUnknownMemberType=false
+
 import json
 import re
 from collections.abc import Mapping, Sequence
@@ -8,15 +11,21 @@ from dataclasses import dataclass
 from datetime import UTC
 from itertools import pairwise
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from seacage.conventions import RecordError
-from seacage.records._readers._cf import is_netcdf
+from seacage.records._readers._cf import (
+    STANDARD_NAMES,
+    is_compass,
+    is_netcdf,
+    open_foreign,
+    vertical_of,
+    zone_conflict,
+)
 from seacage.records._readers._column_map import parse_time, shipped_maps
 from seacage.records._readers._csv import number_in, recognise
-from seacage.records._readers._inspect_netcdf import inspect_netcdf
 from seacage.records._readers._ndbc import is_ndbc
 from seacage.records._readers._own_readers import read_by_own
 from seacage.records._readers._table import (
@@ -29,6 +38,9 @@ from seacage.records._readers._table import (
     text_table,
 )
 from seacage.records._times import microseconds
+
+if TYPE_CHECKING:
+    import xarray
 
 _NO_MAP = "It needs no map: import it as it is."
 _ROWS = 20_000  # as many rows are looked at
@@ -116,8 +128,8 @@ def inspect_file(path: Path | str) -> Inspection:
     if not path.is_file():
         raise RecordError(f"{path}: there is no such file.")
     if is_netcdf(path):
-        findings, map_text = inspect_netcdf(path)
-        return Inspection(findings=findings, map_text=map_text)
+        with open_foreign(path) as dataset:
+            return _inspect_netcdf(path, dataset)
     if own := read_by_own(path, "buoy-1"):
         finding = f"{path.name} has {len(own)} rows of {', '.join(own.values)}."
         return Inspection(findings=(finding, *own.notes, _NO_MAP), map_text="")
@@ -411,3 +423,56 @@ def _key(name: str, layout: Layout) -> str:
 def _quote(text: str) -> str:
     """A TOML string; JSON's escapes are TOML's, but for the DEL that JSON leaves."""
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
+
+
+def _inspect_netcdf(path: Path, dataset: "xarray.Dataset") -> Inspection:
+    """Look at a NetCDF file's variables and begin its map."""
+    sizes = ", ".join(f"{name} {size}" for name, size in dataset.sizes.items())
+    findings = [f"{path.name} is a NetCDF file with the dimensions {sizes}."]
+    lines = [
+        'kind = "netcdf"',
+        f"title = {_quote(path.stem)}",
+        'origin = "?"  # "measured" or "computed"',
+    ]
+    if conflict := zone_conflict(dataset):
+        findings.append(f"Suspicious: {conflict.reason}.")
+        lines.append(f'time_zone = "?"  # {conflict.choices}')
+    read = [name for name in map(str, dataset.data_vars) if _tells(dataset, name)]
+    findings += [_sentence(dataset, name) for name in map(str, dataset.data_vars)]
+    dims = {str(dim) for name in read for dim in dataset[name].dims}
+    at: list[str] = []
+    for dim in sorted(dims):
+        size = dataset.sizes[dim]
+        if size == 1 or dim == "time" or is_compass(dataset, dim):
+            continue
+        if kind := vertical_of(dataset, dim):
+            places = np.asarray(dataset[dim].values, dtype=np.float64)
+            lines.append(f'{kind}_m = "?"  # one of {", ".join(f"{p:g}" for p in places)}')
+        else:
+            at.append(f'{dim} = "?"  # an index, 0 to {size - 1}')
+    if at:
+        lines += ["", "[at]", *at]
+    if not read:
+        findings.append("No standard name tells what to read; declare variables in the map.")
+        lines += [
+            "",
+            '[columns."?"]  # a variable of the file',
+            'quantity = "?"  # current_east, current_north, hs, …',
+            'unit = "?"',
+        ]
+    return Inspection(findings=tuple(findings), map_text="\n".join(lines) + "\n")
+
+
+def _tells(dataset: "xarray.Dataset", name: str) -> bool:
+    array = dataset[name]
+    velocity = str(array.attrs.get("units", "")).startswith(("m s", "m/s", "cm s", "cm/s"))
+    split = any(is_compass(dataset, dim) for dim in array.dims)
+    return array.attrs.get("standard_name") in STANDARD_NAMES or (velocity and split)
+
+
+def _sentence(dataset: "xarray.Dataset", name: str) -> str:
+    attributes = dataset[name].attrs
+    meaning = attributes.get("standard_name") or attributes.get("long_name") or "no name"
+    units = attributes.get("units", "no units")
+    verdict = "is read" if _tells(dataset, name) else "is not read"
+    return f"{name!r} ({meaning}, {units}) {verdict}."

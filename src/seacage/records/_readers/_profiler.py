@@ -115,9 +115,7 @@ def read_profiler(path: Path, choice: ProfilerMap, *, stream: str) -> Record:
     to = (compass(velocity) + choice.declination_deg) % 360.0
     values: dict[str, np.ndarray] = {}
     for column, depth in enumerate(depths):
-        current: dict[str, np.ndarray] = dict(
-            zip(CURRENT, (speed[:, column], to[:, column]), strict=True)
-        )
+        current = {CURRENT[0]: speed[:, column], CURRENT[1]: to[:, column]}
         buoys = column == len(depths) - 1 and choice.depth_m is not None
         values |= current if buoys else keys_at(depth, current)
     ahead = np.timedelta64(choice.utc_offset, "us")
