@@ -34,8 +34,10 @@ def draw_waves(
                 f"simulate: {len(waves)} waves for {len(seas)} seas. Give one for each, or one."
             )
         return _check_waves(waves, depth)
-    one = isinstance(seed, (int, np.integer))
-    seeds = [int(seed) + i for i in range(len(seas))] if one else list(seed)
+    if isinstance(seed, (int, np.integer)):
+        seeds = [int(seed) + i for i in range(len(seas))]
+    else:
+        seeds = list(seed)
     if len(seeds) != len(seas):
         raise InputError(
             f"simulate: {len(seeds)} seeds for {len(seas)} seas. Give one for each, or one number."
