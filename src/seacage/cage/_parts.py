@@ -56,7 +56,8 @@ def check_bound(parameter: Field[Any], value: Any, where: str) -> None:
 _known = partial(quantity, above=True, default=None)
 _intercept = partial(_known, "", "K of N R^m = K, R the range of tension over breaking load")
 _rope_breaking_load = partial(_known, "n", "least of the rope and what it is joined by")
-_rope_factor = partial(quantity, "", "divides the breaking load", low=1.0, default=None)
+_slope = partial(quantity, "", low=1.0, default=None)
+_rope_factor = partial(_slope, "divides the breaking load")
 
 
 class Part:
@@ -151,9 +152,7 @@ class Collar(Part):
     added_mass_coefficient: float = quantity(
         "", "added mass over displaced mass of the pipe's wet share", default=1.0
     )
-    pipe_distance: float | None = quantity(
-        "m", "between the axes of two pipes", above=True, default=None
-    )
+    pipe_distance: float | None = _known("m", "between the axes of two pipes")
     brackets: int | None = quantity(
         "", "that hold two pipes together, evenly spaced; 0 if these slide in them", default=None
     )
@@ -267,7 +266,7 @@ class Frame(Part):
     whose text identifies a cage, and stays.
     """
 
-    side: float | None = quantity("m", "length of a side", above=True, default=None)
+    side: float | None = _known("m", "length of a side")
     corners_east: tuple[float, ...] | None = quantity(
         "m",
         "of each corner from the cage's centre, counter-clockwise, heading 0",
@@ -288,9 +287,7 @@ class Frame(Part):
     rope_slack_sd: float | None = quantity(
         "m", "standard deviation of the slack, as far as it is known", default=None
     )
-    rope_tn_slope: float | None = quantity(
-        "", "m of the frame rope's T–N curve", low=1.0, default=None
-    )
+    rope_tn_slope: float | None = _slope("m of the frame rope's T–N curve")
     rope_tn_intercept: float | None = _intercept()
     rope_breaking_load: float | None = _rope_breaking_load()
     rope_material_factor: float | None = _rope_factor()
@@ -361,7 +358,7 @@ class AnchorLines(Part):
     chain_mass: float = quantity("kg_m", "of the chain in air")
     chain_axial_stiffness: float = quantity("n", "EA of the chain")
     pretension: float = quantity("n", "in still water")
-    rope_tn_slope: float | None = quantity("", "m of the rope's T–N curve", low=1.0, default=None)
+    rope_tn_slope: float | None = _slope("m of the rope's T–N curve")
     rope_tn_intercept: float | None = _intercept()
     rope_breaking_load: float | None = _rope_breaking_load()
     rope_material_factor: float | None = _rope_factor()
@@ -391,8 +388,8 @@ class Bridles(Part):
     )
     breaking_load: float = quantity("n", "least of rope and chain", above=True)
     material_factor: float = quantity("", "divides the breaking load", low=1.0)
-    tn_slope: float | None = quantity(
-        "", "m of the T–N curve of the rope or chain, whichever wears faster", low=1.0, default=None
+    tn_slope: float | None = _slope(
+        "m of the T–N curve of the rope or chain, whichever wears faster"
     )
     tn_intercept: float | None = _intercept()
 

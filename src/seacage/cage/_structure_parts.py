@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 from seacage.cage._parts import Part, quantity
@@ -10,6 +11,8 @@ from seacage.conventions import WATER_DENSITY, InputError
 PIPE, ROPE = "pipe", "rope"
 ROPES, STRUTS, BRACES = "ropes", "struts", "braces"
 ALONG, DIAGONAL = "along", "diagonal"
+
+_damping = partial(quantity, "", "structural damping over pair-critical damping", default=0.1)
 
 
 def _name(meaning: str) -> Any:
@@ -49,9 +52,7 @@ class Section(Named):
     added_mass_coefficient: float = quantity(
         "", "added mass over displaced mass of the wet share", default=1.0
     )
-    damping_ratio: float = quantity(
-        "", "structural damping over pair-critical damping", default=0.1
-    )
+    damping_ratio: float = _damping()
 
     @property
     def is_pipe(self) -> bool:
@@ -79,9 +80,7 @@ class Twine(Named):
     elastic_modulus: float = quantity("pa", "of a twine", above=True)
     density: float = quantity("kg_m3", "of a twine", above=True)
     added_mass_coefficient: float = quantity("", "added mass over displaced mass", default=1.0)
-    damping_ratio: float = quantity(
-        "", "structural damping over pair-critical damping", default=0.1
-    )
+    damping_ratio: float = _damping()
 
     def _check(self) -> None:
         if self.diameter >= self.half_mesh:

@@ -3,16 +3,16 @@
 from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Float
 
 from seacage.conventions import InputError
-from seacage.dynamics._parts._assembly import Assembly, direction
+from seacage.dynamics._parts._assembly import Assembly, PerBar, PerNode, direction
 
 SAFETY = 0.9  # share of the longest stable step that is used [-]
 MOST_ADDED = 4.0  # mass lent to a node, over its own, beyond which a time step is refused [-]
 
 
-def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np.ndarray, " node"]]:
+def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, PerNode]:
     """A copy with enough mass at each node for a time step, and the mass lent [kg].
 
     Light nodes on stiff bars ring faster than a time step can follow, at frequencies at which
@@ -27,11 +27,11 @@ def scale_mass(assembly: Assembly, time_step: float) -> tuple[Assembly, Float[np
     """
     bars = assembly.bars
     need, along = np.zeros(len(assembly.position)), _along_pipes(assembly)
-    needs: list[Float[np.ndarray, " bar"]] = []
+    needs: list[PerBar] = []
     # twice the stiffness at a node along a bar, over its mass, is at least the bar's frequency²
     for end in (0, 1):
         # a bar's damping is a share of the critical one of the mass across a pipe
-        ratio = bars.damping_ratio * np.sqrt(_over_lighter(assembly, bars.ends[:, end], along[end]))
+        ratio = bars.damping_ratio * np.sqrt(_over_lighter(assembly, end, along[end]))
         limit = _fastest(ratio, time_step)
         needs.append(2.0 * _stiffness_along(assembly, end) / limit**2)
         np.maximum.at(need, bars.ends[:, end], needs[end])
@@ -68,14 +68,12 @@ def _along_pipes(assembly: Assembly) -> Float[np.ndarray, "2 bar"]:
     return cosine.T**2
 
 
-def _over_lighter(
-    assembly: Assembly, nodes: Int[np.ndarray, " bar"], along: Float[np.ndarray, " bar"]
-) -> Float[np.ndarray, " bar"]:
-    """Mass of a node across its pipe over that in the direction of a bar [-]."""
+def _over_lighter(assembly: Assembly, end: int, along: PerBar) -> PerBar:
+    """Mass of a bar's end across its pipe over that in the direction of the bar [-]."""
     added = np.zeros(len(assembly.position))
     added[assembly.slender.nodes] = assembly.slender.added_mass
-    lighter = assembly.mass[nodes] - added[nodes]
-    return 1.0 + added[nodes] * along / lighter
+    nodes = assembly.bars.ends[:, end]
+    return 1.0 + added[nodes] * along / (assembly.mass[nodes] - added[nodes])
 
 
 def _below(time: float) -> float:
@@ -84,15 +82,13 @@ def _below(time: float) -> float:
     return float(np.floor(time / digit) * digit)
 
 
-def _fastest(
-    damping_ratio: Float[np.ndarray, " bar"], time_step: float
-) -> Float[np.ndarray, " bar"]:
+def _fastest(damping_ratio: PerBar, time_step: float) -> PerBar:
     """Highest frequency a step can follow, with damping taken at the old velocity [rad/s]."""
     ratio = np.sqrt(2.0) * damping_ratio
     return SAFETY * 2.0 / time_step * (np.sqrt(1.0 + ratio**2) - ratio)
 
 
-def _bending(assembly: Assembly) -> Float[np.ndarray, " node"]:
+def _bending(assembly: Assembly) -> PerNode:
     """Highest stiffness of a pipe against bending, at each of its nodes [N/m]."""
     bends, position = assembly.bends, assembly.position
     before, middle, after = bends.nodes.T
@@ -104,12 +100,11 @@ def _bending(assembly: Assembly) -> Float[np.ndarray, " node"]:
     return stiffness
 
 
-def _stiffness_along(assembly: Assembly, end: int) -> Float[np.ndarray, " bar"]:
+def _stiffness_along(assembly: Assembly, end: int) -> PerBar:
     """Stiffness that a bar's end meets along the bar, from all bars that end there [N/m]."""
     bars, position = assembly.bars, assembly.position
     unit, _ = direction(position, bars.ends)
     matrix = np.zeros((len(position), 3, 3))
-    np.add.at(
-        matrix, bars.ends, (bars.rate[:, None, None] * unit[:, :, None] * unit[:, None])[:, None]
-    )
+    each = bars.rate[:, None, None] * unit[:, :, None] * unit[:, None]
+    np.add.at(matrix, bars.ends, each[:, None])
     return np.einsum("bx,bxy,by->b", unit, matrix[bars.ends[:, end]], unit)

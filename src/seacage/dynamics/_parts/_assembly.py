@@ -490,12 +490,10 @@ def _pipe_water(cage: Cage) -> tuple[PerSpoke, PerSpoke]:
 
 def _slender(cage: Cage) -> Slender:
     wet, low = _pipe_water(cage)
-    pipes = (
-        (cage.ring_nodes(0), cage.collar.added_mass_coefficient * wet),
-        (cage.ring_nodes(cage.tube_ring), cage.sinker_tube.added_mass_coefficient * low),
-    )
+    collar, tube, place = cage.collar, cage.sinker_tube, cage.design_position
     return Slender.joined(
-        *(Slender.ring(nodes, cage.design_position, added) for nodes, added in pipes)
+        Slender.ring(cage.ring_nodes(0), place, collar.added_mass_coefficient * wet),
+        Slender.ring(cage.ring_nodes(cage.tube_ring), place, tube.added_mass_coefficient * low),
     )
 
 
@@ -540,12 +538,11 @@ def _floats(cage: Cage, carried: float) -> Floats:
             f"displaces at most {stiffness.sum() * height / 1e3:.0f} kN. "
             "Check the weights of tube, tip and netting, and the pipes' volume."
         )
-    count = cage.spokes
     return Floats(
         nodes=cage.ring_nodes(0),
         stiffness=stiffness,
-        draft=np.full(count, draft),
-        height=np.full(count, height),
+        draft=np.full(cage.spokes, draft),
+        height=np.full(cage.spokes, height),
     )
 
 
@@ -573,8 +570,7 @@ def _around(cage: Cage, ring: int) -> Int[np.ndarray, "spoke 2"]:
 
 def _chord(cage: Cage, ring: int) -> PerSpoke:
     """Straight length of ring that each node stands for [m]."""
-    nodes = cage.design_position[cage.ring_nodes(ring)]
-    beside = np.linalg.norm(np.roll(nodes, -1, axis=0) - nodes, axis=1)
+    beside = span(cage.design_position, _around(cage, ring))
     return (beside + np.roll(beside, 1)) / 2.0
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from seacage.conventions import InputError
 
@@ -24,19 +24,11 @@ def catenary(
     End B lies ``x_span`` beside and ``z_span`` above end A. Bending, drag and a sloping
     sea bed are left out.
 
-    Parameters
-    ----------
-    x_span, z_span
-        From A to B, horizontal (above 0) and vertical (at least 0) [m].
-    length
-        Unstretched [m].
-    axial_stiffness
-        EA [N].
-    weight
-        Submerged, per metre (above 0) [N/m].
-    seabed_friction
-        Friction coefficient of a flat sea bed at A's height; 0 lets the line slide on it.
-        None: there is no sea bed, and the line may hang below A.
+    ``x_span``, ``z_span``: horizontal (above 0) and vertical (at least 0) [m].
+    ``length``: unstretched [m]. ``axial_stiffness``: EA [N].
+    ``weight``: submerged, per metre (above 0) [N/m].
+    ``seabed_friction``: coefficient of a flat sea bed at A's height; 0 lets the line slide on it.
+    None: there is no sea bed, and the line may hang below A.
 
     Returns the force on A and that on B (horizontal, vertical), x towards B, z up [N].
 
@@ -45,14 +37,7 @@ def catenary(
 
     Source: Irvine (1981), elastic catenary; Jonkman (2007), sea-bed contact with friction.
     """
-    line = _Line(
-        x_span=x_span,
-        z_span=z_span,
-        length=length,
-        stiffness=axial_stiffness,
-        weight=weight,
-        friction=seabed_friction,
-    )
+    line = _Line(x_span, z_span, length, axial_stiffness, weight, seabed_friction)
     _check(line)
     horizontal, vertical = _solve(line)
     lying = _lying(line, vertical)
@@ -64,9 +49,8 @@ def catenary(
     return force_a, (-horizontal, -vertical)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Line:
-    """Arguments of ``catenary``, checked."""
+class _Line(NamedTuple):
+    """Arguments of ``catenary``."""
 
     x_span: float
     z_span: float
@@ -148,13 +132,9 @@ def _lying(line: _Line, vertical: float) -> float:
 
 
 def _check(line: _Line) -> None:
-    above = {
-        "x_span (m)": line.x_span,
-        "length (m)": line.length,
-        "axial_stiffness (N)": line.stiffness,
-        "weight (N/m)": line.weight,
-    }
-    for name, value in above.items():
+    names = ("x_span (m)", "length (m)", "axial_stiffness (N)", "weight (N/m)")
+    above = (line.x_span, line.length, line.stiffness, line.weight)
+    for name, value in zip(names, above, strict=True):
         if not (math.isfinite(value) and value > 0.0):
             raise InputError(f"catenary: {name} = {value:g} must be above 0 and finite.")
     if not (math.isfinite(line.z_span) and line.z_span >= 0.0):

@@ -42,7 +42,10 @@ def steady_flow(
     speed = np.linalg.norm(current_velocity, axis=1)
     unit = current_velocity / np.where(speed > 0.0, speed, 1.0)[:, None]
     behind = downstream(panels, unit[:, None]) if wake else np.zeros((len(speed), len(panels.area)))
-    by_part = None if shear is None else _at_parts(assembly, current_velocity, shear)
+    by_part = None
+    if shear is not None:  # at the design depth of each panel and of each pipe
+        depths = (panels.depth, -assembly.position[assembly.cylinders.ends, 2].mean(axis=1))
+        by_part = [over_depth(current_velocity, shear, depth) for depth in depths]
     variance = np.zeros_like(behind) if wave_variance is None else wave_variance
 
     def flow_of(law: Law, some: Int[np.ndarray, " some"]) -> SteadyFlow:
@@ -69,15 +72,6 @@ def steady_flow(
     kinds: tuple[Law, ...] = tuple(dict.fromkeys(laws))
     cases = [np.flatnonzero([each == kind for each in laws]) for kind in kinds]
     return SteadyFlow.joined(*map(flow_of, kinds, cases)).rows(np.argsort(np.concatenate(cases)))
-
-
-def _at_parts(
-    assembly: Assembly, mean: Float[np.ndarray, "case 2"], shear: Float[np.ndarray, "case 2"]
-) -> tuple[Float[np.ndarray, "case panel 2"], Float[np.ndarray, "case pipe 2"]]:
-    """Velocity at the design depth of each panel and of each pipe [m/s]."""
-    pipes = -assembly.position[assembly.cylinders.ends, 2].mean(axis=1)
-    at_panels, at_pipes = (over_depth(mean, shear, each) for each in (assembly.panels.depth, pipes))
-    return at_panels, at_pipes
 
 
 def _speed_and_way(

@@ -1,4 +1,4 @@
-"""Laws of the netting by name, and the screen laws: a panel's drag and lift by solidity and angle."""
+"""Laws of the netting: drag and lift of a panel from its solidity and its angle to the flow."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
