@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
 
@@ -50,7 +49,7 @@ def keep_adaptations(
         session.rows(_CUT, (cage, microseconds(start or refold.t)))
         session.rows(_FOLDED, (cage, microseconds(refold.t), microseconds(refold.touched)))
     rows = [(cage, microseconds(one.t), one.factors) for one in kept if one.t is not None]
-    session.each(_KEEP, [with_checksum("adaptation", *row) for row in rows])
+    session.keep("adaptation", _KEEP, *rows)
 
 
 def cut_adaptations(session: AbstractSession, cage: str, start: datetime) -> None:
@@ -60,17 +59,17 @@ def cut_adaptations(session: AbstractSession, cage: str, start: datetime) -> Non
 
 def adaptation_at(session: AbstractSession, cage: str, at: datetime) -> Adaptation | None:
     """Read the factors in force at a time; None where none were kept."""
-    for t, factors in session.intact("adaptation", _AT, (cage, microseconds(at)), (cage,), limit=1):
+    for t, factors in session.intact("adaptation", _AT, (cage, microseconds(at)), limit=1):
         return Adaptation(t=moment_of(t), factors=factors)
     ((count,),) = session.rows(_EVER, (cage,))
-    for (factors,) in [] if count else session.intact("adapted", _BY_0_1_0, (cage,), (cage,)):
+    for (factors,) in [] if count else session.intact("adapted", _BY_0_1_0, (cage,)):
         return Adaptation(t=None, factors=factors)
     return None
 
 
 def refold_of(session: AbstractSession, cage: str) -> Refold | None:
     """Read what has to be adapted anew; None where nothing has."""
-    for t, touched in session.intact("refold", _REFOLD, (cage,), (cage,)):
+    for t, touched in session.intact("refold", _REFOLD, (cage,)):
         return Refold(t=moment_of(t), touched=moment_of(touched))
     return None
 
@@ -80,4 +79,4 @@ def ask_refold(session: AbstractSession, cage: str, refold: Refold) -> None:
     pending = refold_of(session, cage)
     t = refold.t if pending is None else min(pending.t, refold.t)
     row = (cage, microseconds(t), microseconds(refold.touched))
-    session.rows(_KEEP_REFOLD, with_checksum("refold", *row))
+    session.keep("refold", _KEEP_REFOLD, row)

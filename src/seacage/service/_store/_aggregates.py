@@ -13,7 +13,6 @@ from datetime import timedelta
 from seacage.conventions import Flag, InputError
 from seacage.records import KEYS
 from seacage.service._schemas._samples import AggregateOut
-from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, Bounds, moment_of, pairs_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._verify import recount
@@ -126,7 +125,7 @@ def aggregates_between(
     enough = bounds.limit + len(marked) * WIDTHS_S[-1] // width_s
     spans: dict[int, list[Sequence[float]]] = {t: [] for t in marked}
     kept = (*of, key, width_s)
-    for row in session.intact("aggregate", _KEPT, (*kept, first, last), kept, limit=enough):
+    for row in session.intact("aggregate", _KEPT, (*kept, first, last), head=4, limit=enough):
         spans.setdefault(row[0] - row[0] % WIDEST_US, []).append(row)
     found: list[Sequence[float]] = []
     for t in sorted(spans):
@@ -149,9 +148,9 @@ def aggregates_between(
 def _marks(session: AbstractSession, cage: str, stream: str, start: int, end: int) -> set[int]:
     """Where the marked spans of a stream begin, but for those of sealed days."""
     of = (cage, stream)
-    days = session.intact("sealed", _SEALED_IN, (*of, start - start % DAY_US, end), of)
+    days = session.intact("sealed", _SEALED_IN, (*of, start - start % DAY_US, end), head=2)
     sealed = {t for (t,) in days}
-    marked = {t for t, _ in session.intact("mark", _MARKED_IN, (*of, start, end), of)}
+    marked = {t for t, _ in session.intact("mark", _MARKED_IN, (*of, start, end), head=2)}
     return {t for t in marked if t - t % DAY_US not in sealed} if sealed else marked
 
 
@@ -160,11 +159,11 @@ def _renew(session: AbstractSession, spans: Sequence[Span]) -> None:
     live = [span for span in spans if span[2] in _marks(session, *span, span[2] + 1)]
     fresh = [(*span[:2], *summary) for span in live for summary in _sum_up(session, span)]
     session.each(_CLEAR, [(*span, span[2] + WIDEST_US) for span in live])
-    session.each(_KEEP, [with_checksum("aggregate", *row) for row in fresh])
+    session.keep("aggregate", _KEEP, *fresh)
     recount(session, "aggregate", live)
     session.each(_UNMARK, spans)
 
 
 def _sum_up(session: AbstractSession, span: Span) -> list[Summary]:
-    rows = session.intact("sample", _SAMPLES, (*span, span[2] + WIDEST_US), span[:1])
+    rows = session.intact("sample", _SAMPLES, (*span, span[2] + WIDEST_US))
     return summaries((row[1], row[3]) for row in rows)

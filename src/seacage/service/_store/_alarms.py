@@ -3,7 +3,6 @@
 import json
 from collections.abc import Sequence
 
-from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import Bounds, microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._verify import recount
@@ -23,7 +22,7 @@ def keep_alarms(
     session: AbstractSession, cage: str, book: str, journal: Sequence[AlarmEvent]
 ) -> None:
     """Replace the book of a cage and add lines to its journal."""
-    session.rows(_KEEP_BOOK, with_checksum("alarm_book", cage, book))
+    session.keep("alarm_book", _KEEP_BOOK, (cage, book))
     keep_lines(session, cage, journal)
 
 
@@ -33,20 +32,20 @@ def keep_lines(session: AbstractSession, cage: str, journal: Sequence[AlarmEvent
         (cage, microseconds(one.t), json.dumps({key: getattr(one, key) for key in _KEYS}))
         for one in journal
     ]
-    session.each(_KEEP_LINE, [with_checksum("journal", *line) for line in lines])
+    session.keep("journal", _KEEP_LINE, *lines)
     recount(session, "journal", [(cage, "", t) for _, t, _ in lines])
 
 
 def alarm_book(session: AbstractSession, cage: str) -> str | None:
     """Read the book of a cage; None where none was kept."""
-    rows = session.intact("alarm_book", _BOOK, (cage,), (cage,))
+    rows = session.intact("alarm_book", _BOOK, (cage,))
     return rows[0][0] if rows else None
 
 
 def journal_between(session: AbstractSession, cage: str, bounds: Bounds) -> list[AlarmEvent]:
     """Read lines in time order, as ``Store.journal`` says."""
     sql, values = _LINES + _ORDERS[bounds.newest], (cage, *bounds.us)
-    rows = session.intact("journal", sql, values, (cage,), limit=bounds.limit)
+    rows = session.intact("journal", sql, values, limit=bounds.limit)
     return [_event(t, line) for t, line in (reversed(rows) if bounds.newest else rows)]
 
 

@@ -4,8 +4,10 @@ import hashlib
 import json
 from collections.abc import Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from datetime import date, datetime
 from importlib import import_module
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote, unquote
@@ -13,7 +15,7 @@ from urllib.parse import quote, unquote
 from seacage.conventions import Flag, SeacageError
 from seacage.records import KEYS, Sample
 from seacage.service._small_files import system_locks, write_small
-from seacage.service._store._database._rows import Bounds, microseconds, moment_of
+from seacage.service._store._database._rows import MICROSECOND, Bounds, microseconds, moment_of
 from seacage.service._store._database._session import StoreError
 
 _MANIFEST = "manifest.json"
@@ -46,7 +48,7 @@ class Archive:
             manifest = self._manifest(folder)
             there = self._read(folder, stream, day, manifest[day]) if day in manifest else []
             both = {key_of(one): one for one in (*there, *samples)}
-            content = encode_parquet(cage, stream, [both[key] for key in sorted(both)])
+            content = encode_parquet(cage, stream, sorted(both.values(), key=key_of))
             digest = hashlib.sha256(content).hexdigest()
             name = f"{day.isoformat()}-{digest[:12]}.parquet"
             entry = {"file": name, "sha256": digest, "samples": len(both)}
@@ -85,6 +87,43 @@ class Archive:
                 if not again or self._manifest(folder).get(day) == entry:
                     raise
         return []
+
+    def with_samples(
+        self, found: Sequence[Sample], cage: str, stream: str | None, bounds: Bounds
+    ) -> list[Sample]:
+        """Add what only the archive has to what was found in the store, under the same bounds."""
+        if found and len(found) >= bounds.limit:  # what lies beyond would be cut off again
+            beyond = {"start": found[0].t} if bounds.newest else {"end": found[-1].t + MICROSECOND}
+            bounds = replace(bounds, **beyond)
+        held = {key_of(one): one for one in found}
+        days = self.days(cage, stream, bounds)
+        added, reached = 0, None
+        for day, name in reversed(days) if bounds.newest else days:
+            if added >= bounds.limit and day != reached:
+                break
+            reached = day
+            older = self.read(cage, name, day, bounds)
+            added += len(older)
+            held = {key_of(one): one for one in older} | held
+        ordered = sorted(held.values(), key=key_of)
+        return ordered[-bounds.limit :] if bounds.newest else ordered[: bounds.limit]
+
+    def with_latest(
+        self, latest: Mapping[str, Sample], cage: str, *, at: datetime | None
+    ) -> dict[str, Sample]:
+        """Put what the archive has later in the place of a stream's newest in the store."""
+        bounds = Bounds(end=at and at + MICROSECOND, limit=1, newest=True)
+        newest = dict(latest)
+        for stream in self.streams(cage):
+            found = [latest[stream]] if stream in latest else []
+            newest |= {one.stream: one for one in self.with_samples(found, cage, stream, bounds)}
+        return newest
+
+    def samples(self, cage: str, stream: str | None, bounds: Bounds) -> Iterator[Sample]:
+        """Read archived samples in time order, a day at a time."""
+        for day, group in groupby(self.days(cage, stream, bounds), key=lambda one: one[0]):
+            samples = [one for _, name in group for one in self.read(cage, name, day, bounds)]
+            yield from sorted(samples, key=key_of)
 
     def cages(self) -> list[str]:
         """The cages that it has days of."""

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 from seacage.service._store._alarms import keep_lines
-from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import microseconds, moment_of
 from seacage.service._store._database._session import AbstractSession
 from seacage.twin import AlarmEvent
@@ -38,9 +37,8 @@ def keep_damage(
     """Keep the stretches of a span in place of those that were there."""
     session.rows(_CUT, (cage, *map(microseconds, span)))
     sums = [json.dumps([one.damage, one.valid, one.missing, one.twin]) for one in rows]
-    times = [microseconds(one.t) for one in rows]
-    kept = zip(times, sums, strict=True)
-    session.each(_KEEP, [with_checksum("damage", cage, *one) for one in kept])
+    times = (microseconds(one.t) for one in rows)
+    session.keep("damage", _KEEP, *((cage, *one) for one in zip(times, sums, strict=True)))
 
 
 def begin_damage(
@@ -51,8 +49,7 @@ def begin_damage(
     journal: Sequence[AlarmEvent],
 ) -> None:
     """Have lines' damage counted from a time on, and say in the journal why; both or neither."""
-    rows = [with_checksum("damage_begin", cage, line, microseconds(t)) for line in lines]
-    session.each(_BEGIN, rows)
+    session.keep("damage_begin", _BEGIN, *((cage, line, microseconds(t)) for line in lines))
     keep_lines(session, cage, journal)
 
 
@@ -69,9 +66,8 @@ def damage_of(
     session: AbstractSession, cage: str
 ) -> tuple[list[Stretch], list[tuple[str, datetime]]]:
     """Read all stretches of a cage, and from when on its lines were counted, in time order."""
-    rows = list[Stretch]()
-    for t, sums in session.intact("damage", _ROWS, (cage,), (cage,)):
-        # Rows of before 0.2.0 do not name a twin.
-        rows.append(Stretch(moment_of(t), *json.loads(sums)))
-    begins = session.intact("damage_begin", _BEGINS, (cage,), (cage,))
-    return rows, [(line, moment_of(t)) for line, t in begins]
+    rows = session.intact("damage", _ROWS, (cage,))
+    begins = session.intact("damage_begin", _BEGINS, (cage,))
+    # Rows of before 0.2.0 do not name a twin.
+    stretches = [Stretch(moment_of(t), *json.loads(sums)) for t, sums in rows]
+    return stretches, [(line, moment_of(t)) for line, t in begins]

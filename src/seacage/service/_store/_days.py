@@ -5,24 +5,16 @@ from typing import Any
 
 from seacage.service._store._aggregates import renew_between
 from seacage.service._store._archive import Archive
-from seacage.service._store._database._checksum import with_checksum
 from seacage.service._store._database._rows import DAY_US, SAMPLES, SampleRow, moment_of, readable
 from seacage.service._store._database._session import AbstractSession
 from seacage.service._store._integrity._verify import Read, recount
 from seacage.service._store._quality import retire_memory
-from seacage.service._store._samples import STREAMS
+from seacage.service._store._samples import NAMED
 from seacage.service._store._write_queue import Writer
 
-# As the streams of a cage.
-_CAGES = """
-WITH RECURSIVE named(name) AS (
-    SELECT min(cage) FROM sample
-    UNION ALL
-    SELECT (SELECT min(cage) FROM sample WHERE cage > named.name)
-    FROM named WHERE named.name IS NOT NULL
-)
-SELECT name FROM named WHERE name IS NOT NULL"""
-_STREAMS = STREAMS + "SELECT stream FROM named WHERE stream IS NOT NULL"  # noqa: S608
+_NAMES = NAMED + "SELECT name FROM named WHERE name IS NOT NULL"  # noqa: S608
+_CAGES = _NAMES.format(name="cage", of="TRUE")
+_STREAMS = _NAMES.format(name="stream", of="cage = ?")
 _NEXT = "SELECT min(t) FROM sample WHERE cage = ? AND stream = ? AND t >= ?"
 _ROWS = f"{SAMPLES} AND stream = ? AND t >= ? AND t < ? ORDER BY t, seq"
 _SEAL = "INSERT INTO sealed VALUES (?, ?, ?, ?) ON CONFLICT DO NOTHING"
@@ -52,14 +44,14 @@ def days_before(session: AbstractSession, cage: str, before: int) -> Iterator[tu
 
 def rows_of_day(session: AbstractSession, cage: str, stream: str, day: int) -> list[SampleRow]:
     """Read a day's samples as they are stored."""
-    return session.intact("sample", _ROWS, (cage, stream, day, day + DAY_US), (cage,))
+    return session.intact("sample", _ROWS, (cage, stream, day, day + DAY_US))
 
 
 def seal(session: AbstractSession, cage: str, stream: str, day: int) -> None:
     """Make the aggregates of a day final, and forget how its samples were checked."""
     renew_between(session, cage, stream, day, day + DAY_US)
     retire_memory(session, (cage, stream), day + DAY_US)
-    session.rows(_SEAL, with_checksum("sealed", cage, stream, day))
+    session.keep("sealed", _SEAL, (cage, stream, day))
 
 
 def delete(session: AbstractSession, cage: str, rows: Sequence[SampleRow]) -> None:

@@ -19,6 +19,7 @@ from pydantic import TypeAdapter
 from seacage.conventions import Flag
 from seacage.records import (
     AHEAD,
+    DEFAULT_LIMITS,
     Amendment,
     Limits,
     QualityState,
@@ -28,7 +29,7 @@ from seacage.records import (
     is_withdrawn,
     withdrawn,
 )
-from seacage.service._store._database._checksum import checksum, with_checksum
+from seacage.service._store._database._checksum import checksum
 from seacage.service._store._database._rows import (
     DAY_US,
     SAMPLES,
@@ -143,17 +144,14 @@ class QualityControl:
             self._memory.pop(of, None)
 
     def check(
-        self,
-        # The transaction, and whose samples
-        session: AbstractSession,
-        of: Of,
-        # As they came. Those that come back as ``fresh`` are the caller's to write.
-        samples: Mapping[Key, Sample],
-        limits: Limits,  # to check with
+        self, session: AbstractSession, of: Of, samples: Mapping[Key, Sample], limits: Limits
     ) -> Checked:
-        """Check samples of one stream, each in its place, and write what they amend."""
-        stream = _Stream(session, of)
-        end = self._memory_of(stream, limits)
+        """Check samples of one stream, each in its place, and write what they amend.
+
+        Those that come back as ``fresh`` are the caller's to write.
+        """
+        stream = _Stream(session, of, limits)
+        end = self._memory_of(stream)
         doubtful = [key for key in samples if key <= end.at or of in self._beyond]
         known = stream.find(doubtful)
         again = {key for key, (_, one) in known.items() if is_withdrawn(one)}
@@ -164,10 +162,10 @@ class QualityControl:
             _, checked.fresh[key] = check_sample(QualityState(), samples[key], limits)
             fresh.remove(key)
         if fresh:
-            walk = _Walk(stream, end, limits, checked)
+            walk = _Walk(stream, end, checked)
             if fresh[0] <= end.at:
                 checked.walked = True
-                walk.memory = stream.root(fresh[0], limits)
+                walk.memory = stream.root(fresh[0])
                 _check_again(walk, end, fresh, samples)
             while fresh:
                 key = fresh.popleft()
@@ -176,9 +174,7 @@ class QualityControl:
             self._memory[of] = walk.memory
         return checked
 
-    def withdraw(
-        self, session: AbstractSession, of: Of, *, clock: datetime, after: int, limits: Limits
-    ) -> Checked:
+    def withdraw(self, session: AbstractSession, of: Of, *, clock: datetime, after: int) -> Checked:
         """Withdraw samples of a stream after a time [us], some at a time, the newest first."""
         checked, stream = Checked(), _Stream(session, of)
         rows = stream.rows(_AHEAD, after, f"%{AHEAD}%", limit=_AT_ONCE)
@@ -190,16 +186,16 @@ class QualityControl:
         ]
         stream.write(gone, checked)
         # What they had shown of the samples before them is taken back.
-        walk = _Walk(stream, stream.recall(limits, until=after), limits, checked)
+        walk = _Walk(stream, stream.recall(until=after), checked)
         walk.open_again()
         walk.finish()
         self._memory.pop(of, None)
         return checked
 
-    def _memory_of(self, stream: "_Stream", limits: Limits) -> Memory:
+    def _memory_of(self, stream: "_Stream") -> Memory:
         of = stream.of
         if of not in self._memory:
-            memory = stream.recall(limits)
+            memory = stream.recall()
             if memory.since >= EVERY:
                 memory = stream.keep(memory)
             self._memory[of] = memory
@@ -271,22 +267,23 @@ class _Stream:
 
     session: AbstractSession
     of: Of
+    limits: Limits = DEFAULT_LIMITS  # to check with
 
-    def root(self, key: Key, limits: Limits) -> Memory:
+    def root(self, key: Key) -> Memory:
         """What was remembered a little before a sample."""
-        return self.checkpoint(_BEFORE, key) or self._first_memory(key[0], limits)
+        return self.checkpoint(_BEFORE, key) or self._first_memory(key[0])
 
-    def recall(self, limits: Limits, *, until: int = _END[0]) -> Memory:
+    def recall(self, *, until: int = _END[0]) -> Memory:
         """What is remembered after the last sample until a time [us]."""
         end = (until, _END[1])
-        memory = self.root(end, limits)
+        memory = self.root(end)
         for row, sample in self.read(memory.at, until=end):
-            memory, _, _ = memory.after(_key(row), sample, limits)
+            memory, _, _ = memory.after(_key(row), sample, self.limits)
         return memory
 
     def checkpoint(self, which: str, key: Key) -> Memory | None:
         """Read the checkpoint before or behind a sample."""
-        rows = self.session.intact("quality", which, (*self.of, key[0], *key), self.of, limit=1)
+        rows = self.session.intact("quality", which, (*self.of, key[0], *key), head=2, limit=1)
         if not rows:
             return None
         ((t, seq, text),) = rows
@@ -296,12 +293,12 @@ class _Stream:
     def keep(self, memory: Memory) -> Memory:
         """Make a checkpoint."""
         text = _KEPT.dump_json((memory.quality, dict(memory.newest))).decode()
-        self.session.rows(_KEEP, with_checksum("quality", *self.of, *memory.at, text))
+        self.session.keep("quality", _KEEP, (*self.of, *memory.at, text))
         return replace(memory, since=0)
 
     def rows(self, sql: str, *values: object, limit: int | None = None) -> list[SampleRow]:
         """Select samples as they are stored."""
-        return self.session.intact("sample", sql, (*self.of, *values), self.of[:1], limit=limit)
+        return self.session.intact("sample", sql, (*self.of, *values), limit=limit)
 
     def read(self, after: Key, *, until: Key) -> Iterator[tuple[SampleRow, Sample]]:
         """Read the samples in order, but for those that are withdrawn."""
@@ -334,7 +331,7 @@ class _Stream:
             return []
         first, last = keys[0][0], keys[-1][0]
         span = (*self.of, first - first % DAY_US, last)
-        sealed = {t for (t,) in self.session.intact("sealed", _SEALED, span, self.of)}
+        sealed = {t for (t,) in self.session.intact("sealed", _SEALED, span, head=2)}
         return [key for key in keys if key[0] - key[0] % DAY_US in sealed]
 
     def write(self, entries: Sequence[_Entry], checked: Checked) -> None:
@@ -353,7 +350,7 @@ class _Stream:
                 checked.amendments += _amendments(entry.row, sample)
         self.session.each(_AMEND, changes)
 
-    def _first_memory(self, t: int, limits: Limits) -> Memory:
+    def _first_memory(self, t: int) -> Memory:
         """Where to begin without a checkpoint: as far back as the tests look.
 
         Only stores of 0.1.0 have more samples before their first checkpoint than are looked at
@@ -363,10 +360,8 @@ class _Stream:
         if not last:
             return Memory()
         seen = {key for one in last for key in one.values}
-        steady = [
-            limits.steadiness[of]
-            for of in {group.partition(" ")[0] for group, _ in groups_of(seen)}
-        ]
+        groups = {group.partition(" ")[0] for group, _ in groups_of(seen)}
+        steady = [self.limits.steadiness[group] for group in groups]
         times = (t for one in steady for t in (one.attenuated_s, one.flat_fail_s, one.gap_s))
         reach_s = max([0.0, *filter(isfinite, times)])
         reach = 2 * round(min(reach_s, _LONGEST_S) * _SECOND)
@@ -376,14 +371,9 @@ class _Stream:
 class _Walk:
     """The checks on their way along a stream, and what changes by them."""
 
-    def __init__(self, stream: _Stream, memory: Memory, limits: Limits, checked: Checked) -> None:
-        self.stream, self.memory = stream, memory
-        self._limits, self._checked = limits, checked
+    def __init__(self, stream: _Stream, memory: Memory, checked: Checked) -> None:
+        self.stream, self.memory, self._checked = stream, memory, checked
         self._entries: dict[Key, _Entry] = {}
-
-    def pass_by(self, key: Key, sample: Sample) -> None:
-        """Go past a sample whose flags stay as they are."""
-        self.memory, _, _ = self.memory.after(key, sample, self._limits)
 
     def take(
         self, key: Key, sample: Sample, row: SampleRow | None = None, *, again: bool = False
@@ -393,18 +383,14 @@ class _Walk:
         Where samples are checked again the checkpoints that there are serve, as long as they lie
         near enough.
         """
-        self.memory, own, amendments = self.memory.after(key, sample, self._limits)
+        self.memory, own, amendments = self.memory.after(key, sample, self.stream.limits)
         for one in amendments:
             self._amend(one, key[0])
         self._entries[key] = _Entry(own, key, row)
         if self.memory.since >= EVERY * (2 if again else 1):
-            self.keep()
+            self.memory = self.stream.keep(self.memory)
         if len(self._entries) > _HELD:
             self._write(lambda entry: entry.key[0] not in self.memory.open)
-
-    def keep(self) -> None:
-        """Make a checkpoint here."""
-        self.memory = self.stream.keep(self.memory)
 
     def open_again(self) -> None:
         """Take up the samples that the next may amend, without what was found of them later."""
@@ -461,12 +447,12 @@ def _check_again(
             walk.take(late, samples[late], again=True)
             same_from = None
         if not began:
-            walk.pass_by(key, sample)
+            walk.memory, _, _ = walk.memory.after(key, sample, walk.stream.limits)
             continue
         walk.take(key, sample, row, again=True)
         if kept is not None and key == kept.at:
             same_from = key if same_from is None and walk.memory.same(kept) else same_from
-            walk.keep()
+            walk.memory = walk.stream.keep(walk.memory)
             kept = walk.stream.checkpoint(_BEHIND, key)
         more = fresh and fresh[0] <= end.at
         if same_from and not more and min(walk.memory.open, default=key[0]) > same_from[0]:

@@ -30,28 +30,28 @@ _REMARKED = (
     f"{_rows.SAMPLES} AND stream = ? AND t > ? AND t <= ? AND remarks <> '[]' ORDER BY t, seq"
 )
 
-# Goes down the index from stream to stream: a DISTINCT would read every sample
-STREAMS = """
-WITH RECURSIVE named(stream) AS (
-    SELECT min(stream) FROM sample WHERE cage = ?
+# Goes down the index from name to name: a DISTINCT would read every sample
+NAMED = """
+WITH RECURSIVE named(name) AS (
+    SELECT min({name}) FROM sample WHERE {of}
     UNION ALL
-    SELECT (SELECT min(stream) FROM sample WHERE cage = ? AND stream > named.stream)
-    FROM named WHERE named.stream IS NOT NULL
+    SELECT (SELECT min({name}) FROM sample WHERE {of} AND {name} > named.name)
+    FROM named WHERE named.name IS NOT NULL
 )"""
 
 # In each stream to its newest: no scan of the samples. In SQLite's words, and in those that
 # PostgreSQL plans well.
-_LATEST = """
-SELECT s.stream, s.t, s.seq, s.readings, s.remarks, s.t_ingest, s.crc FROM named """
+_LATEST = f"""{NAMED.format(name="stream", of="cage = ?")}
+SELECT s.stream, s.t, s.seq, s.readings, s.remarks, s.t_ingest, s.crc FROM named """  # noqa: S608
 _NEWEST = {
-    False: """JOIN sample s ON s.cage = ? AND s.stream = named.stream AND (s.t, s.seq) = (
+    False: """JOIN sample s ON s.cage = ? AND s.stream = named.name AND (s.t, s.seq) = (
     SELECT t, seq FROM sample
-    WHERE cage = s.cage AND stream = named.stream AND t <= ? AND remarks NOT LIKE ?
+    WHERE cage = s.cage AND stream = named.name AND t <= ? AND remarks NOT LIKE ?
     ORDER BY t DESC, seq DESC LIMIT 1
 )""",
     True: """CROSS JOIN LATERAL (
     SELECT * FROM sample
-    WHERE cage = ? AND stream = named.stream AND t <= ? AND remarks NOT LIKE ?
+    WHERE cage = ? AND stream = named.name AND t <= ? AND remarks NOT LIKE ?
     ORDER BY t DESC, seq DESC LIMIT 1
 ) s""",
 }
@@ -191,7 +191,7 @@ def withdraw_samples(
     """Withdraw samples of a stream after a time, as ``Store.withdraw`` says; how many."""
     cut_adaptations(session, of[0], after)
     until = _rows.microseconds(after)
-    checked = control.withdraw(session, of, clock=clock, after=until, limits=DEFAULT_LIMITS)
+    checked = control.withdraw(session, of, clock=clock, after=until)
     changed = _times_changed({of: checked})
     mark(session, changed, _rows.microseconds(clock))
     return len(changed)
@@ -237,7 +237,7 @@ def samples_between(
         sql, values = f"{sql} AND remarks NOT LIKE ?", (*values, f"%{AHEAD}%")
     order = "DESC" if bounds.newest else "ASC"
     sql += f" ORDER BY t {order}, stream {order}, seq {order} LIMIT ?"
-    rows = session.intact("sample", sql, values, (cage,), limit=bounds.limit)
+    rows = session.intact("sample", sql, values, limit=bounds.limit)
     return _read(session, cage, reversed(rows) if bounds.newest else rows, known_at)
 
 
@@ -246,7 +246,7 @@ def amendments_since(
 ) -> tuple[Amendment, ...]:
     """Read what later samples, until a time, have made worse, as ``Store.amendments`` says."""
     first, last = _rows.microseconds(start), _rows.microseconds(known_at)
-    rows = session.intact("sample", _REMARKED, (*of, first, last), of[:1])
+    rows = session.intact("sample", _REMARKED, (*of, first, last))
     return tuple(one for row in rows for one in _rows.amendments_of_row(row, until=last))
 
 
@@ -255,7 +255,7 @@ def latest_samples(
 ) -> dict[str, Sample]:
     """Read the newest sample of each stream until a time, it included; none that is withdrawn."""
     until = _rows.microseconds(at) if at else _rows.Bounds().us[1]
-    query = STREAMS + _LATEST + _NEWEST[session.lateral]
+    query = _LATEST + _NEWEST[session.lateral]
     bounds = _rows.Bounds(end=at and at + _rows.MICROSECOND, limit=1, newest=True)
     samples = list[Sample]()
     for row in session.rows(query, (cage, cage, cage, until, f"%{AHEAD}%")):
@@ -279,7 +279,7 @@ def _read(
 
 
 def _one(session: AbstractSession, key: tuple[object, ...]) -> list[_rows.SampleRow]:
-    return session.intact("sample", _ONE, key, key[:1])
+    return session.intact("sample", _ONE, key)
 
 
 def _replace(session: AbstractSession, rows: Iterable[_rows.Row]) -> None:

@@ -15,7 +15,6 @@ from seacage.service._store._adaptations import Adaptation, Refold, keep_adaptat
 from seacage.service._store._aggregates import aggregates_between, check_aggregate
 from seacage.service._store._alarms import alarm_book, journal_between, keep_alarms
 from seacage.service._store._archive import Archive
-from seacage.service._store._archive_reads import latest_of, with_archive
 from seacage.service._store._caretaker import Caretaker
 from seacage.service._store._damage import Stretch
 from seacage.service._store._database import _session
@@ -151,18 +150,15 @@ class Store:
             check_seq(sample)
         return self._writer.ask(Append(cage, tuple(samples), ingested, limits))
 
-    def withdraw(
-        self,
-        cage: str,
-        stream: str,
-        *,
-        clock: datetime,  # what it was set to
-        now: datetime,  # what it says now; samples up to a minute ahead of it stay
-    ) -> "Future[int]":  # how many flags changed; 0 once nothing is left to withdraw
+    def withdraw(self, cage: str, stream: str, *, clock: datetime, now: datetime) -> "Future[int]":
         """Withdraw samples that are ahead of a clock that has stepped back, some at a time.
 
         They are flagged FAIL and count no more, until they are sent again: nothing is compared
-        with them, and they are no stream's latest.
+        with them, and they are no stream's latest. Resolves to how many flags changed, 0 once
+        nothing is left to withdraw.
+
+        ``clock``: what it was set to. ``now``: what it says now; samples up to a minute ahead of
+        it stay.
         """
         after, control, of = now + _AHEAD, self._writer.control, (cage, stream)
         return self._writer.ask(
@@ -204,7 +200,7 @@ class Store:
         )
         if self._archive is None:
             return found
-        return with_archive(found, self._archive, cage, stream, bounds)
+        return self._archive.with_samples(found, cage, stream, bounds)
 
     def latest(self, cage: str, *, at: datetime | None = None) -> dict[str, Sample]:
         """Read the newest sample of each stream, or the newest until a time, it included.
@@ -214,7 +210,7 @@ class Store:
         latest = self._read("latest", _samples.latest_samples, cage, at=at)
         if self._archive is None:
             return latest
-        return latest_of(latest, self._archive, cage, at=at)
+        return self._archive.with_latest(latest, cage, at=at)
 
     def aggregates(
         self,
@@ -332,13 +328,10 @@ class Store:
         bounds = Bounds(start=start, end=end, limit=limit, newest=newest)
         return self._read("journal", journal_between, cage, bounds)
 
-    def retire(
-        self,
-        cage: str,
-        *,
-        before: datetime,  # only days that have ended by then
-    ) -> int:  # how many samples were deleted
-        """Delete the samples of whole UTC days before a time; their aggregates stay, final.
+    def retire(self, cage: str, *, before: datetime) -> int:
+        """Delete the samples of whole UTC days that have ended by a time; how many they were.
+
+        Their aggregates stay, final.
 
         With an archive a day is there before it leaves the store. Ingest goes on meanwhile.
         Samples that come later for such a day are stored, and archived the next time, but no
@@ -376,25 +369,20 @@ class Store:
         try:
             begun = self._database.round
             try:
-                answer = self._read_once(lambda session: ask(session, *args, **more))
+                with self._database.reading() as session:
+                    answer = ask(session, *args, **more)
             except DamageError as error:
                 self._renew(begun, error)
-                answer = self._read_once(lambda session: ask(session, *args, **more))
+                with self._database.reading() as session:
+                    answer = ask(session, *args, **more)
         except StoreError as error:
             self._unread = {**self._unread, what: error}
             self._care.begin()  # which looks until the way is open again
             raise
         if self._unread:  # a way that is open again is so for all, a damaged page is not
-            self._unread = {
-                one: error
-                for one, error in self._unread.items()
-                if one != what and isinstance(error, DamageError)
-            }
+            still = {k: e for k, e in self._unread.items() if isinstance(e, DamageError)}
+            self._unread = {k: e for k, e in still.items() if k != what}
         return answer
-
-    def _read_once(self, ask: Callable[[AbstractSession], T]) -> T:
-        with self._database.reading() as session:
-            return ask(session)
 
     def _renew(self, begun: int, error: DamageError) -> None:
         def renew(_: AbstractSession) -> None:

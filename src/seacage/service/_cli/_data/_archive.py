@@ -77,7 +77,6 @@ def read(
         stream: Only this stream's.
     """
     from seacage.service._store._archive import Archive
-    from seacage.service._store._archive_reads import read_archive_between
     from seacage.service._store._database._rows import Bounds
 
     archive = Archive(folder)
@@ -94,7 +93,7 @@ def read(
             "flags": {key: int(flag) for key, flag in one.flags.items()},
             "remarks": list(one.remarks),
         }
-        for one in read_archive_between(archive, cage, stream, bounds)
+        for one in archive.samples(cage, stream, bounds)
     )
     if _console.wants_json():
         _console.report({"samples": list(rows)})

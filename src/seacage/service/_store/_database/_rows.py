@@ -42,23 +42,14 @@ class Bounds:
         return start, _ALL if self.end is None else microseconds(self.end)
 
 
-def row_of(
-    # Whose, with the flags that it has now, and when it came
-    cage: str,
-    sample: Sample,
-    ingested: datetime,
-    # By key, where a later sample changed a flag: the flag before, and the later one's time
-    amended: Mapping[str, Own],
-) -> Row:
-    """Write a sample as a row."""
-    return (
-        cage,
-        sample.stream,
-        *key_of(sample),
-        readings_text(sample, amended),
-        remarks_text(sample),
-        microseconds(ingested),
-    )
+def row_of(cage: str, sample: Sample, ingested: datetime, amended: Mapping[str, Own]) -> Row:
+    """Write a sample, with the flags that it has now, as a row.
+
+    ``amended``: by key, where a later sample changed a flag: the flag before, and the later one's
+    time.
+    """
+    texts = readings_text(sample, amended), remarks_text(sample)
+    return (cage, sample.stream, *key_of(sample), *texts, microseconds(ingested))
 
 
 def key_of(sample: Sample) -> tuple[int, int]:

@@ -9,7 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from seacage.conventions import SeacageError
-from seacage.service._store._database._checksum import CHECKED, UNVERIFIED, Damage, checksum
+from seacage.service._store._database._checksum import (
+    CHECKED,
+    UNVERIFIED,
+    Damage,
+    checksum,
+    with_checksum,
+)
 from seacage.service._store._database._rows import DAY_US, Row
 
 _FIRST = "INSERT INTO tally SELECT cage, '{kind}', {stream}, {day}, count(*) FROM {kind} GROUP BY "
@@ -59,11 +65,10 @@ class AbstractSession(ABC):
     def intact(
         self,
         table: str,  # from which it selects
-        # It answers whole rows but for ``head``, the checksum last
-        sql: str,
-        values: Sequence[object] = (),
-        head: Sequence[object] = (),  # the first columns
+        sql: str,  # answers whole rows but for their first columns, the checksum last
+        values: Sequence[object],
         *,
+        head: int = 1,  # so many of the values are those first columns
         # The last value, where the statement has one: so many intact rows are wanted
         limit: int | None = None,
     ) -> Answer:  # without the checksum
@@ -72,7 +77,7 @@ class AbstractSession(ABC):
         while True:
             bound = () if limit is None else (limit + spare,)
             rows = self.rows(sql, (*values, *bound))
-            good = self.whole(table, rows, head)
+            good = self.whole(table, rows, values[:head])
             if limit is None or len(good) >= limit or len(rows) < limit + spare:
                 return good[:limit]
             spare = 2 * (len(rows) - len(good))
@@ -90,6 +95,10 @@ class AbstractSession(ABC):
     @abstractmethod
     def each(self, sql: str, rows: Iterable[Sequence[object]]) -> None:
         """Run one statement for each row of values."""
+
+    def keep(self, table: str, sql: str, *rows: Sequence[object]) -> None:
+        """Run an INSERT for each whole row of a table, with its checksum."""
+        self.each(sql, [with_checksum(table, *row) for row in rows])
 
     @abstractmethod
     def insert(self, rows: Sequence[Row]) -> tuple[bool, ...]:

@@ -143,16 +143,9 @@ class SqliteDatabase(_session.AbstractDatabase):
     @contextmanager
     def writing(self) -> Generator[_session.AbstractSession]:
         """Write; the block's end is the commit, which has reached the disk."""
-        connection = self._writer
-        with _translate_errors(self._path, "takes no samples"):
+        with _translate_errors(self._path, "takes no samples"), self._writer as connection:
             connection.execute("BEGIN IMMEDIATE")
-            try:
-                yield SqliteSession(connection, self.damage)
-                connection.execute("COMMIT")
-            except BaseException:
-                if connection.in_transaction:
-                    connection.execute("ROLLBACK")
-                raise
+            yield SqliteSession(connection, self.damage)
 
     @contextmanager
     def reading(self) -> Generator[_session.AbstractSession]:
@@ -283,10 +276,10 @@ def _prepare(connection: sqlite3.Connection, path: Path) -> None:
     _look_through(connection)
     # Where there is nothing to make nothing is written: a full disk must not keep it shut.
     if _version(connection, path) < _VERSION:
-        connection.execute("BEGIN IMMEDIATE")
-        if _version(connection, path) < _VERSION:
-            _make_tables(connection)
-        connection.execute("COMMIT")
+        with connection:
+            connection.execute("BEGIN IMMEDIATE")
+            if _version(connection, path) < _VERSION:
+                _make_tables(connection)
     _make_views(connection)
 
 
