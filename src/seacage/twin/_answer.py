@@ -27,101 +27,67 @@ class Answer:
 
     A row that is not valid holds NaN in every number, and ``reason`` says why; a door writes
     such a number as nothing at all.
-
-    Parameters
-    ----------
-    valid
-        The input was there, passed its checks and was fresh.
-    in_domain
-        The input lies inside what level 1 was trained on; False means extrapolating.
-    bridle_in_domain, sensor_in_domain
-        The same of the level that predicts: level 2 has a domain of its own, of the water in
-        its training window, within level 1's.
-    reason
-        One sentence where a row is not valid or extrapolates, else "".
-    bridle_names, bridle_tension, bridle_level
-        Best mean and standard deviation of each bridle's tension [N], and the fidelity that
-        gave them: 2 where a shackle has a level-2 model, else 1.
-    bridle_calibrated
-        Whether the standard deviation is about the true tension: at level 2, and at level 1 with
-        the discrepancy of the simulations that at least three other shackles show. Elsewhere it
-        is the emulator's own, about the simulations.
-    bridle_low
-        The simulations alone [N].
-    sensor_names, sensor_units, sensor, sensor_level
-        Predicted reading of each sensor, with the scatter of its readings [N] or [m] depth. The
-        standard deviation at level 2 is calibrated: mean ± 1.96 of it has a coverage of 95 %. At
-        level 1 it is the emulator's own.
-    sensor_low
-        The simulations alone at the sensor's place, with the emulator's spread [N] or [m].
-    node_position, shape_level
-        Best mean of the whole net [m], x east, y north, z up, and its fidelity: 2 where at least
-        two depth sensors correct it, else 1.
-    node_sigma
-        Largest standard deviation over the axes of each node [m], the emulator's own.
-    node_std
-        Standard deviation of the true net about that mean, along the axes [m]; NaN at level 1.
-    volume_fraction, volume_std
-        Volume over the same model's volume in still water [-], and its standard deviation about
-        the true one; NaN at level 1.
-    line_names, line_kinds
-        All lines of the mooring, the bridles first; none where the twin did not learn loads in
-        waves.
-    line
-        Their loads in waves; None as above. At level 2 the intervals of mean and standard
-        deviation hold the ones of ten minutes, of lines whose held-out windows were enough to
-        calibrate them. Other bridles have intervals where at least three shackles show how far
-        level 1 is off, other lines NaN. Where the waves are not known the standard
-        deviation of the mean is its spread over the site's waves, at level 1.
-    line_level
-        Level of each line's loads: 2 where its shackle corrects any of them, else 1.
-    line_calibrated
-        Whether a line has intervals about its true loads: at level 2, and bridles at level 1 as
-        above.
-    line_in_domain, line_reason
-        Whether the water is inside what the loads were learned in, and one sentence where there
-        are none or they are extrapolated, else "".
-    line_tp_assumed
-        Whether Tp was not known, and the loads are over its distribution at the same Hs.
-    node_motion
-        Standard deviations of each node's place in waves, horizontally (of both axes together)
-        and upwards, of half an hour, at level 1 [m]; NaN as ``line`` where the waves are not
-        known, None where they were not learned.
-    depth_std, depth_std_level
-        Standard deviation of each depth sensor's depth in waves [m], and 2 where its windows
-        correct it, else 1.
     """
 
-    valid: Bool[np.ndarray, " case"]
+    valid: Bool[np.ndarray, " case"]  # the input was there, passed its checks and was fresh
+    # The input lies inside what level 1 was trained on; False means extrapolating
     in_domain: Bool[np.ndarray, " case"]
+    # The same of the level that predicts: level 2 has a domain of its own, of the water in its
+    # training window, within level 1's
     bridle_in_domain: Bool[np.ndarray, "case line"]
     sensor_in_domain: Bool[np.ndarray, "case sensor"]
-    reason: tuple[str, ...]
+    reason: tuple[str, ...]  # one sentence where a row is not valid or extrapolates, else ""
     bridle_names: tuple[str, ...]
-    bridle_tension: Prediction
-    bridle_low: Float[np.ndarray, "case line"]
-    bridle_level: Int[np.ndarray, " line"]
+    bridle_tension: Prediction  # best mean and standard deviation [N]
+    bridle_low: Float[np.ndarray, "case line"]  # the simulations alone [N]
+    bridle_level: Int[np.ndarray, " line"]  # 2 where a shackle has a level-2 model, else 1
+    # Whether the standard deviation is about the true tension: at level 2, and at level 1 with the
+    # discrepancy of the simulations that at least three other shackles show. Elsewhere it is the
+    # emulator's own, about the simulations.
     bridle_calibrated: Bool[np.ndarray, " line"]
     sensor_names: tuple[str, ...]
     sensor_units: tuple[str, ...]
+    # Predicted reading of each sensor, with the scatter of its readings [N] or [m] depth. The
+    # standard deviation at level 2 is calibrated: mean ± 1.96 of it has a coverage of 95 %. At
+    # level 1 it is the emulator's own.
     sensor: Prediction
+    # The simulations alone at the sensor's place, with the emulator's spread [N] or [m]
     sensor_low: Prediction
     sensor_level: Int[np.ndarray, " sensor"]
-    node_position: PerNode
+    node_position: PerNode  # best mean of the whole net [m], x east, y north, z up
+    # Largest standard deviation over the axes of each node [m], the emulator's own
     node_sigma: Float[np.ndarray, "case node"]
+    # Standard deviation of the true net about that mean, along the axes [m]; NaN at level 1
     node_std: PerNode
-    shape_level: int
+    shape_level: int  # 2 where at least two depth sensors correct the net, else 1
+    # Volume over the same model's volume in still water [-], and its standard deviation about the
+    # true one; NaN at level 1
     volume_fraction: Float[np.ndarray, " case"]
     volume_std: Float[np.ndarray, " case"]
+    # All lines of the mooring, the bridles first; none where the twin did not learn loads in waves
     line_names: tuple[str, ...] = ()
     line_kinds: tuple[str, ...] = ()
+    # Their loads in waves; None as above. At level 2 the intervals of mean and standard deviation
+    # hold the ones of ten minutes, of lines whose held-out windows were enough to calibrate them.
+    # Other bridles have intervals where at least three shackles show how far level 1 is off, other
+    # lines NaN. Where the waves are not known the standard deviation of the mean is its spread
+    # over the site's waves, at level 1.
     line: Loads | None = None
-    line_level: Int[np.ndarray, " mooring_line"]
+    line_level: Int[np.ndarray, " mooring_line"]  # 2 where its shackle corrects any load, else 1
+    # Whether a line has intervals about its true loads: at level 2, and bridles at level 1 as above
     line_calibrated: Bool[np.ndarray, " mooring_line"]
+    # Whether the water is inside what the loads were learned in, and one sentence where there are
+    # none or they are extrapolated, else ""
     line_in_domain: Bool[np.ndarray, " case"]
     line_reason: tuple[str, ...]
+    # Whether Tp was not known, and the loads are over its distribution at the same Hs
     line_tp_assumed: Bool[np.ndarray, " case"]
+    # Standard deviations of each node's place in waves, horizontally (of both axes together) and
+    # upwards, of half an hour, at level 1 [m]; NaN as ``line`` where the waves are not known, None
+    # where they were not learned
     node_motion: Float[np.ndarray, "case node 2"] | None = None
+    # Standard deviation of each depth sensor's depth in waves [m], and 2 where its windows correct
+    # it, else 1
     depth_std: Float[np.ndarray, "case depth"]
     depth_std_level: Int[np.ndarray, " depth"]
 

@@ -13,8 +13,6 @@ from seacage.twin._events import Answered
 from seacage.twin._state import TwinState
 from seacage.twin._twin import Twin
 
-_NO_TROUBLE: Mapping[str, str] = MappingProxyType({})
-
 
 def assess(
     book: AlarmBook,
@@ -23,29 +21,20 @@ def assess(
     state: TwinState,
     answered: Answered,
     policy: AlarmPolicy,
-    trouble: Mapping[str, str] = _NO_TROUBLE,
+    trouble: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[AlarmBook, tuple[AlarmEvent, ...]]:
     """Evaluate every alarm after a step of the twin.
 
     Nothing is read but the arguments. A number that is not known neither raises nor clears,
     and where the clock has jumped all delays start again.
 
-    Parameters
-    ----------
-    book
-        From ``AlarmBook.new`` or from the last call.
-    twin, state, answered
-        The twin, its state after a step, and the answer of that step.
-    policy
-        The limits.
-    trouble
-        The service's own faults: a sentence by the alarm's name, such as ``history.store``. A
-        fault that is not named any more is over.
+    ``book``: from ``AlarmBook.new`` or from the last call.
+    ``twin``, ``state``, ``answered``: the twin, its state after a step, and the step's answer.
+    ``policy``: the limits.
+    ``trouble``: the service's own faults: a sentence by the alarm's name, such as
+    ``history.store``. A fault that is not named any more is over.
 
-    Returns
-    -------
-    book, events
-        The journal's lines in order.
+    Returns the book and the journal's lines in order.
     """
     now = answered.t
     book = book.at(now, jump_s=policy.jump_s)

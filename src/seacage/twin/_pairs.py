@@ -60,22 +60,15 @@ def align(
     Readings that failed a check, and times without a sound and fresh sample of the buoy, are
     left out.
 
-    Parameters
-    ----------
-    field, sensor
-        The record, and the name of one of its sensors.
-    start, end
-        Of the sensor's readings that count: start <= t < end; both ends open where left out.
-    mean_s
-        Averages over windows so long [s], which begin at whole multiples since 1970: the
-        sensor's readings, and the buoy's vectors as they were held at each of them. The time
-        is the middle of the window.
-    hold_s
-        Largest age of the buoy's sample [s].
-    suspect
-        Keep readings, of sensor or buoy, that a check found suspect.
-    travel_time
-        Of the current from the buoy to the cage; None for none.
+    ``field``, ``sensor``: the record, and the name of one of its sensors.
+    ``start``, ``end``: of the sensor's readings that count: start <= t < end; both ends open where
+    left out.
+    ``mean_s``: averages over windows so long [s], which begin at whole multiples since 1970: the
+    sensor's readings, and the buoy's vectors as they were held at each of them. The time is the
+    middle of the window.
+    ``hold_s``: largest age of the buoy's sample [s].
+    ``suspect``: keep readings, of sensor or buoy, that a check found suspect.
+    ``travel_time``: of the current from the buoy to the cage; None for none.
     """
     if sensor not in field.sensors:
         raise InputError(
@@ -111,11 +104,8 @@ def training_window(
     It ends at the first silence longer than ``pause_s`` [s] and is at most ``days`` long: the
     first of a shackle's two windows, and the first days of a depth sensor that never stopped.
 
-    Returns
-    -------
-    start, end
-        The first reading, and the first moment after the window; None where no reading
-        passed its checks.
+    Returns the first reading's time, and the first moment after the window; None where no reading
+    passed its checks.
     """
     key = next(iter(record.values))
     time = record.time[record.usable(key)]
@@ -134,14 +124,11 @@ def spread_out(pairs: Pairs, count: int, *, seed: int) -> Pairs:
     """
     if len(pairs) <= count:
         return pairs
-    return pairs.rows(spread_design(_places(pairs), count, seed=seed))
-
-
-def _places(pairs: Pairs) -> Float[np.ndarray, "pair 3"]:
     velocity = pairs.metocean.current_velocity
     elapsed = (pairs.time - pairs.time[0]) / (pairs.time[-1] - pairs.time[0])
     typical = max(float(np.sqrt(np.mean(velocity**2) * 2.0)), 1e-9)
-    return np.column_stack([velocity / typical, 2.0 * elapsed])
+    places = np.column_stack([velocity / typical, 2.0 * elapsed])
+    return pairs.rows(spread_design(places, count, seed=seed))
 
 
 def _sound(record: Record, key: str, *, suspect: bool) -> Bool[np.ndarray, " t"]:

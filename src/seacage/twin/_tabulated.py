@@ -67,18 +67,13 @@ class TabulatedTwin:
 
         Raises InputError: the twin has waves as an input too, or the tolerance cannot be met.
 
-        Parameters
-        ----------
-        twin
-            Whose inputs are the current alone.
-        tolerance, std_tolerance
-            Largest error of a mean in predictive standard deviations, and of a standard
-            deviation in itself.
-        least_tension_std, least_depth_std
-            Standard deviations below these count as these [N], [m]: a simulator is emulated
-            with almost no variance close to its own cases, more sharply than any sensor sees.
-        most_nodes
-            Largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
+        ``twin``: whose inputs are the current alone.
+        ``tolerance``, ``std_tolerance``: largest error of a mean in predictive standard deviations,
+        and of a standard deviation in itself.
+        ``least_tension_std``, ``least_depth_std``: standard deviations below these count as these
+        [N], [m]: a simulator is emulated with almost no variance close to its own cases, more
+        sharply than any sensor sees.
+        ``most_nodes``: largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
         """
         inputs = twin.models.inputs
         if inputs != ("current",):
@@ -86,10 +81,9 @@ class TabulatedTwin:
                 f"tabulated: the inputs of this twin are {' and '.join(inputs)}; a table holds the "
                 "current alone. Use the twin itself, or train one with inputs=('current',)."
             )
-        floor = {"N": least_tension_std, "m": least_depth_std}
         bridles = [least_tension_std] * len(twin.bridle_names)
-        units = twin.predict(Metocean.from_columns({}, 0)).sensor_units
-        sensors = [floor[unit] for unit in units]
+        sensors = [least_depth_std] * len(twin.cage.depth_sensors)
+        sensors += [least_tension_std] * len(twin.cage.shackles)
         table = Table.of(
             _DirectTwin(twin=twin),
             Disc(radius=twin.models.edge[0]),

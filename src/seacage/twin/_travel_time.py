@@ -25,17 +25,11 @@ class TravelTime:
     It is advection by the current that the buoy measures, whatever its direction: with a long
     distance the time is the limit in any current, as of a tide that comes later. Left out: a cage
     that lies upstream of its buoy.
-
-    Parameters
-    ----------
-    distance_m
-        That the water takes to the cage [m]; 0 where the buoy's current is the cage's own.
-    longest_s
-        Limit in slow water [s].
     """
 
+    # That the water takes to the cage [m]; 0 where the buoy's current is the cage's own
     distance_m: float = 0.0
-    longest_s: float = 0.0
+    longest_s: float = 0.0  # limit in slow water [s]
 
     def __post_init__(self) -> None:
         if not all(0.0 <= one < math.inf for one in (self.distance_m, self.longest_s)):

@@ -33,28 +33,20 @@ class Action(StrEnum):
 class Limit:
     """Limits at which a number raises an alarm and clears it; the larger, the worse.
 
-    Parameters
-    ----------
-    raise_at, clear_at
-        Raised at or above the one, cleared at or below the other, in the number's unit;
-        ``clear_at`` is the smaller: the deadband keeps a number near its limit from chattering.
-    on_delay_s, off_delay_s
-        Time for which the number has to stay there [s].
-    repeat_after_s
-        Time after which an alarm is notified again while it is raised and not acknowledged [s];
-        None notifies once.
-    severity
-        1 to 1000, the larger the worse.
-
     Source: OPC UA Part 9, Alarms and Conditions: severity, on- and off-delay, re-alarm time.
     """
 
+    # Raised at or above the one, cleared at or below the other, in the number's unit; ``clear_at``
+    # is the smaller: the deadband keeps a number near its limit from chattering
     raise_at: float
     clear_at: float
+    # Time for which the number has to stay there [s]
     on_delay_s: float = 0.0
     off_delay_s: float = 0.0
+    # Time after which an alarm is notified again while it is raised and not acknowledged [s]; None
+    # notifies once
     repeat_after_s: float | None = None
-    severity: int = 500
+    severity: int = 500  # 1 to 1000, the larger the worse
 
     def __post_init__(self) -> None:
         numbers = (self.raise_at, self.clear_at, self.on_delay_s, self.off_delay_s)

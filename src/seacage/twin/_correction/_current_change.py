@@ -25,18 +25,12 @@ class CurrentChange:
 
     A value that is held for longer than usual is the water of then. Left out: that a tide turns
     as a table says, and that some hours of it change faster than others.
-
-    Parameters
-    ----------
-    after_s
-        Ascending times [s], of which the first is the buoy's usual step; none where they are not
-        known, and nothing is added.
-    covariance
-        Of the change over each.
     """
 
+    # Ascending times [s], of which the first is the buoy's usual step; none where they are not
+    # known, and nothing is added
     after_s: tuple[float, ...] = ()
-    covariance: tuple[Covariance, ...] = ()
+    covariance: tuple[Covariance, ...] = ()  # of the change over each
 
     def __post_init__(self) -> None:
         after, each = np.array(self.after_s), np.array(self.covariance).reshape(-1, 3)

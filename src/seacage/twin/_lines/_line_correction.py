@@ -14,40 +14,24 @@ LEAST_HS = 0.05  # below which the logarithm of Hs counts as here [m]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LineCorrection:
-    """Level 2 of one line, each part only where held-out windows show a gain.
+    """Level 2 of one line, each part only where held-out windows show a gain."""
 
-    Parameters
-    ----------
-    every_s
-        Between the shackle's readings [s].
-    peak_samples
-        Readings per peak period in the training windows, at the median [-]. Of fewer than four
-        neither the largest load nor the damage-equivalent load has a factor of its own.
-    windows
-        Number of training windows of ten minutes.
-    mean
-        Whether the mean is that of the shackle's level 2.
-    std
-        Ratio of the standard deviation to level 1's.
-    std_log_sd
-        Standard deviation of a window's log standard deviation about the prediction; None where
-        too few held-out windows show it [-].
-    peak, damage
-        Factors on level 1's peak factor, and on its damage-equivalent load over its standard
-        deviation; None where that load stays level 1's [-].
-    maximum_log_sd
-        Standard deviation of the largest load's logarithm, above the mean, that is not the
-        waves'; None as above [-].
-    """
-
-    every_s: float
+    every_s: float  # between the shackle's readings [s]
+    # Readings per peak period in the training windows, at the median [-]. Of fewer than four
+    # neither the largest load nor the damage-equivalent load has a factor of its own.
     peak_samples: float
-    windows: int
-    mean: bool
-    std: LoadRatio
+    windows: int  # number of training windows of ten minutes
+    mean: bool  # whether the mean is that of the shackle's level 2
+    std: LoadRatio  # of the standard deviation to level 1's
+    # Standard deviation of a window's log standard deviation about the prediction; None where too
+    # few held-out windows show it [-]
     std_log_sd: float | None
+    # Factors on level 1's peak factor, and on its damage-equivalent load over its standard
+    # deviation; None where that load stays level 1's [-]
     peak: float | None
     damage: float | None
+    # Standard deviation of the largest load's logarithm, above the mean, that is not the waves';
+    # None as above [-]
     maximum_log_sd: float | None
 
     @property

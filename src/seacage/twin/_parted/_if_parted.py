@@ -17,42 +17,27 @@ class IfParted:
 
     By level 1, so without intervals. NaN where ``reason`` or ``in_domain`` says that nothing is
     known.
-
-    Parameters
-    ----------
-    cage
-        As it was simulated.
-    parted, kinds
-        The line that has parted, and its kind.
-    line_names, line_kinds
-        Of the lines whose loads these are, the parted one among them.
-    mean, maximum_3h
-        Mean tension, and the expected largest of three hours; 0 of the line itself [N].
-    volume_share
-        Volume inside the net over that in still water, of the whole cage [-].
-    clearance
-        Least height of the net above the sea bed, the lowest that a node came in a case's
-        time [m].
-    drift
-        Of the collar's centre from its place in still water, horizontally, in the mean [m].
-    in_domain
-        Whether the sea is inside what was learned of the line.
-    reason
-        One sentence for a sea of which nothing is known, else "".
     """
 
-    cage: Cage
+    cage: Cage  # as it was simulated
+    # The line that has parted, and its kind
     parted: tuple[str, ...]
     kinds: tuple[str, ...]
+    # Of the lines whose loads these are, the parted one among them
     line_names: tuple[str, ...]
     line_kinds: tuple[str, ...]
+    # Mean tension, and the expected largest of three hours; 0 of the line itself [N]
     mean: Float[np.ndarray, "case parted line"]
     maximum_3h: Float[np.ndarray, "case parted line"]
+    # Volume inside the net over that in still water, of the whole cage [-]
     volume_share: Float[np.ndarray, "case parted"]
+    # Least height of the net above the sea bed, the lowest that a node came in a case's time [m]
     clearance: Float[np.ndarray, "case parted"]
+    # Of the collar's centre from its place in still water, horizontally, in the mean [m]
     drift: Float[np.ndarray, "case parted"]
+    # Whether the sea is inside what was learned of the line
     in_domain: Bool[np.ndarray, "case parted"]
-    reason: tuple[str, ...]
+    reason: tuple[str, ...]  # one sentence for a sea of which nothing is known, else ""
 
     @property
     def largest_mean(self) -> Int[np.ndarray, "case parted"]:

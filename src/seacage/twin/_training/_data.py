@@ -17,42 +17,24 @@ from seacage.twin._training._held_out import HeldOut
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Training:
-    """Settings of a twin's training.
+    """Settings of a twin's training."""
 
-    Parameters
-    ----------
-    inputs
-        Inputs of the models; waves need a campaign and a buoy that have them.
-    high_fidelity_points
-        Readings of each sensor that level 2 is fitted to, at most.
-    choice
-        ``"spread"`` over currents and time, or ``"paper"``: the single readings of a few
-        minutes (depth) or a few seconds (shackles) from the first on. The latter gives the noise
-        of one hour and too narrow intervals; no readings remain to calibrate them on.
-    days
-        Longest training window [d]; later days remain to validate the twin.
-    pause_s
-        A longer silence of a sensor ends its training window [s].
-    mean_s
-        Time over which readings are averaged [s]; the intervals are of such means.
-    noise_sd
-        Standard deviation of the instrument's noise by sensor, which is taken off the standard
-        deviation of its readings in waves [N] or [m]; estimated for a sensor that is not named.
-    restarts
-        Random starts of each search for hyperparameters, beside the deterministic one.
-    seed
-        Of the choice of readings and of the searches.
-    """
-
+    # Inputs of the models; waves need a campaign and a buoy that have them
     inputs: tuple[Input, ...] = ("current",)
-    high_fidelity_points: int = 300
+    high_fidelity_points: int = 300  # readings of each sensor that level 2 is fitted to, at most
+    # "spread" over currents and time, or "paper": the single readings of a few minutes (depth) or
+    # a few seconds (shackles) from the first on. The latter gives the noise of one hour and too
+    # narrow intervals; no readings remain to calibrate them on.
     choice: Literal["spread", "paper"] = "spread"
-    days: float = 25.0
-    pause_s: float = 86400.0
-    mean_s: float = 60.0
+    days: float = 25.0  # longest training window [d]; later days remain to validate the twin
+    pause_s: float = 86400.0  # a longer silence of a sensor ends its training window [s]
+    mean_s: float = 60.0  # time over which readings are averaged [s]; intervals are of such means
+    # Standard deviation of the instrument's noise by sensor, which is taken off the standard
+    # deviation of its readings in waves [N] or [m]; estimated for a sensor that is not named
     noise_sd: Mapping[str, float] = field(default_factory=dict[str, float])
+    # Random starts of each search for hyperparameters, beside the deterministic one
     restarts: int = 3
-    seed: int = 0
+    seed: int = 0  # of the choice of readings and of the searches
 
     def select(self, pairs: Pairs) -> Pairs:
         """Select the readings that level 2 is fitted to."""

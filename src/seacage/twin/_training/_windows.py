@@ -30,33 +30,20 @@ PEAK_SAMPLES = 4.0
 class Windows(Rows):
     """Statistics of one sensor's readings over windows, which begin at whole multiples since 1970.
 
-    Parameters
-    ----------
-    number
-        Of windows since 1970.
-    metocean
-        Mean over the window.
-    mean, std
-        Of the readings, the instrument's noise taken off the standard deviation [N] or [m].
-    maximum
-        Largest value, on a parabola through each three readings; NaN of a sensor too slow for
-        the waves [N] or [m].
-    damage
-        Damage-equivalent load; NaN as above, or without a T-N slope [N].
-    every_s
-        Between readings [s].
-    noise_sd
-        Standard deviation of the instrument's noise that was taken off [N] or [m].
+    The instrument's noise is taken off the standard deviations. The largest value is that of a
+    parabola through each three readings; it and the damage are NaN of a sensor too slow for the
+    waves, and the damage without a T-N slope.
     """
 
-    number: Int[np.ndarray, " window"]
-    metocean: Metocean
+    number: Int[np.ndarray, " window"]  # of windows since 1970
+    metocean: Metocean  # mean over the window
+    # Of the readings [N] or [m]
     mean: Float[np.ndarray, " window"]
     std: Float[np.ndarray, " window"]
     maximum: Float[np.ndarray, " window"]
-    damage: Float[np.ndarray, " window"]
-    every_s: float
-    noise_sd: float
+    damage: Float[np.ndarray, " window"]  # damage-equivalent load [N]
+    every_s: float  # between readings [s]
+    noise_sd: float  # standard deviation of the instrument's noise [N] or [m]
 
     def __len__(self) -> int:
         return len(self.number)
