@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage import _graph, _parts
-from seacage.cage._nearest import Nearest, nearest_on_net
+from seacage.cage._nearest import Nearest, Node3, Point3, nearest_on_net
 from seacage.cage._tangent_plane import TangentPlane
 from seacage.cage._toml import TomlFile, alter
 from seacage.conventions import InputError, NonsenseError, parse_toml, towards
@@ -251,15 +251,11 @@ class Cage(TomlFile):
         """Corners of each panel, counter-clockwise from outside; triangles repeat the last."""
         return _read_only(_graph.panels(self.rings, self.spokes))
 
-    def volume(
-        self, node_position: Float[np.ndarray, "*case node 3"]
-    ) -> Float[np.ndarray, "*case"]:
+    def volume(self, node_position: _graph.Shapes) -> _graph.PerCase:
         """Volume that a shape of the net encloses, closed by the collar's polygon [m3]."""
         return _graph.enclosed_volume(node_position, self.panels, self.ring_nodes(0))
 
-    def nearest(
-        self, point: Float[np.ndarray, "point 3"], node_position: Float[np.ndarray, "node 3"]
-    ) -> Nearest:
+    def nearest(self, point: Point3, node_position: Node3) -> Nearest:
         """Nearest place to each point on a shape of the net [m]."""
         return nearest_on_net(point, node_position, self.panels)
 

@@ -5,6 +5,9 @@ from jaxtyping import Float, Int
 
 from seacage.cage._parts import Mesh
 
+PerCase = Float[np.ndarray, "*case"]
+Shapes = Float[np.ndarray, "*case node 3"]
+
 # A bridle that a node moves by more is warned of [deg]; bearings are seldom written finer
 SNAPPED = 0.01
 
@@ -19,16 +22,15 @@ def spoke_angles(mesh: Mesh, bearings: Float[np.ndarray, " bridle"]) -> Float[np
     nearest to each is moved to its bearing, and those between in proportion. All stay even
     where two bridles of different bearings share a spoke, or a sector would become narrow.
     """
-    even = 2.0 * np.pi * np.arange(mesh.spokes) / mesh.spokes
+    number = np.arange(mesh.spokes)
+    even = 2.0 * np.pi * number / mesh.spokes
     if mesh.spoke_bearings is not None:
         return np.unwrap(np.deg2rad(90.0 - np.array(mesh.spoke_bearings)))
     at = (90.0 - bearings) / 360.0 * mesh.spokes
     held = np.floor(at + 0.5)  # half a sector apart, all go the same way
     spoke, first, which = np.unique(held % mesh.spokes, return_index=True, return_inverse=True)
     shift = (at - held)[first]
-    moved = np.arange(mesh.spokes) + np.interp(
-        np.arange(mesh.spokes), spoke, shift, period=mesh.spokes
-    )
+    moved = number + np.interp(number, spoke, shift, period=mesh.spokes)
     sector = 360.0 / mesh.spokes
     shared = np.abs(at - held - shift[which]).max() * sector > SNAPPED
     narrowest = np.diff(moved, append=moved[0] + mesh.spokes).min()
@@ -77,10 +79,8 @@ def panels(rings: int, spokes: int) -> Int[np.ndarray, "panel 4"]:
 
 
 def enclosed_volume(
-    node_position: Float[np.ndarray, "*case node 3"],
-    panels: Int[np.ndarray, "panel 4"],
-    collar: Int[np.ndarray, " spoke"],
-) -> Float[np.ndarray, "*case"]:
+    node_position: Shapes, panels: Int[np.ndarray, "panel 4"], collar: Int[np.ndarray, " spoke"]
+) -> PerCase:
     """Volume inside the net, closed by the polygon of the collar [m3].
 
     By the divergence theorem over triangles; each quadrilateral is the mean of its two

@@ -10,7 +10,7 @@ import numpy as np
 from jaxtyping import Float, Int
 
 from seacage.cage._cage import Cage, DepthSensor
-from seacage.cage._graph import enclosed_volume
+from seacage.cage._graph import PerCase, Shapes, enclosed_volume
 from seacage.cage._parts import Site, check_bounds, quantity
 from seacage.cage._structure_parts import Anchor, Line, Named, Net, Point, Ring, Section, Tie, Twine
 from seacage.cage._toml import TomlFile
@@ -242,9 +242,7 @@ class Structure(TomlFile):
     warnings: ClassVar[tuple[str, ...]] = ()
     """None: nothing of the file is changed."""
 
-    def volume(
-        self, node_position: Float[np.ndarray, "*case node 3"]
-    ) -> Float[np.ndarray, "*case"]:
+    def volume(self, node_position: Shapes) -> PerCase:
         """Volume that the nets enclose, closed by the polygon of their uppermost edge [m3].
 
         NaN without a net.

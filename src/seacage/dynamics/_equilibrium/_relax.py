@@ -5,10 +5,10 @@ from concurrent.futures import Executor
 from functools import partial
 
 import numpy as np
-from jaxtyping import Float, Int
+from jaxtyping import Int
 
-from seacage.dynamics._kernel._library import Relaxation, Relaxing, State, kernel
-from seacage.dynamics._parts._assembly import Assembly, span
+from seacage.dynamics._kernel._library import PerCase, Relaxation, Relaxing, State, kernel
+from seacage.dynamics._parts._assembly import Assembly, PerBar, PerNode, span
 from seacage.dynamics._physics._loads import SteadyFlow, total_net_force
 
 # Steps of a round of relaxation, rounds before the unfinished regroup, and regroupings
@@ -72,10 +72,9 @@ def relaxation_of(assembly: Assembly, *, tolerance: float) -> Relaxation:
     )
 
 
-def _soft_rates(assembly: Assembly) -> Float[np.ndarray, " bar"]:
+def _soft_rates(assembly: Assembly) -> PerBar:
     """Spring rates to relax with: the net's no stiffer than the shape needs [N/m]."""
-    bars = assembly.bars
-    true = bars.rate
+    bars, true = assembly.bars, assembly.bars.rate
     straightening = assembly.scales.force / assembly.scales.mesh
     soft = np.minimum(true, SOFTNESS * max(straightening, 1.0))
     soft[bars.pushed] = HOOP_SHARE * true[bars.pushed]
@@ -83,9 +82,7 @@ def _soft_rates(assembly: Assembly) -> Float[np.ndarray, " bar"]:
     return soft
 
 
-def _fictitious_mass(
-    assembly: Assembly, rate: Float[np.ndarray, " bar"]
-) -> Float[np.ndarray, " node"]:
+def _fictitious_mass(assembly: Assembly, rate: PerBar) -> PerNode:
     """Masses with which a step of 1 s is stable: 0.6 of the stiffness at the node [kg].
 
     The highest frequency squared is at most twice the stiffness over the mass (Gershgorin),
@@ -103,7 +100,7 @@ def _fictitious_mass(
     return 0.6 * stiffness
 
 
-def load_over_weight(assembly: Assembly, flow: SteadyFlow) -> Float[np.ndarray, " case"]:
+def load_over_weight(assembly: Assembly, flow: SteadyFlow) -> PerCase:
     """The water's load on the design shape over all weights [-]."""
     rigid = total_net_force(assembly.panels, flow, assembly.position[None])
     return np.linalg.norm(rigid, axis=1) / -np.sum(assembly.weight)

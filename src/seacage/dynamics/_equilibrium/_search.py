@@ -9,12 +9,10 @@ from jaxtyping import Bool, Float, Int
 
 from seacage.conventions import Result
 from seacage.dynamics._equilibrium import _relax
-from seacage.dynamics._kernel._library import Balance, Balancing, kernel
+from seacage.dynamics._kernel._library import Balance, Balancing, PerCase, kernel
 from seacage.dynamics._parts._assembly import Assembly, span
-from seacage.dynamics._physics._loads import SteadyFlow
+from seacage.dynamics._physics._loads import Nodal, SteadyFlow
 
-CaseNode3 = Float[np.ndarray, "case node 3"]
-PerCase = Float[np.ndarray, " case"]
 TOLERANCE = 0.5  # largest force left on any node of a settled cage [N]
 # Force left on a node at which Newton's method ends; it shrinks a hundredfold a step there [N]
 AIM = 1e-3
@@ -35,7 +33,7 @@ class Equilibria:
     ``Response`` says what ``result``, ``number``, ``spread`` and ``unstable`` mean.
     """
 
-    position: CaseNode3
+    position: Nodal
     residual: PerCase
     result: Int[np.ndarray, " case"]
     number: Int[np.ndarray, " case"]
@@ -85,7 +83,7 @@ def _first_shapes(
     return np.stack(shapes, axis=1).reshape(-1, *assembly.position.shape)
 
 
-def _swung(assembly: Assembly, angle: PerCase, ahead: Float[np.ndarray, "case 3"]) -> CaseNode3:
+def _swung(assembly: Assembly, angle: PerCase, ahead: Float[np.ndarray, "case 3"]) -> Nodal:
     """What hangs in the design shape swung by an angle, each node round the surface above it."""
     hangs = np.zeros(len(assembly.position))
     net = slice(0, assembly.cage_nodes)
@@ -166,7 +164,7 @@ def _relax_the_rest(
     state.take(rest * starts, found)
 
 
-def _near(assembly: Assembly, position: CaseNode3, balance: Balance) -> Balancing:
+def _near(assembly: Assembly, position: Nodal, balance: Balance) -> Balancing:
     """Cases begun close to an equilibrium, with the tensions of their shapes."""
     bars = assembly.bars
     tension = bars.rate * (span(position, bars.ends) - bars.length)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 
 import numpy as np
 from jaxtyping import Bool, Float
@@ -16,8 +16,9 @@ from seacage.conventions import Rows, SeacageError
 from seacage.dynamics._kernel import _structs
 from seacage.dynamics._kernel._sparsity import Pattern
 from seacage.dynamics._parts._assembly import Assembly
-from seacage.dynamics._physics._loads import SteadyFlow
+from seacage.dynamics._physics._loads import CaseBar, Nodal, SteadyFlow
 
+PerCase = Float[np.ndarray, " case"]
 SUFFIX = {"Darwin": ".dylib", "Windows": ".dll"}.get(platform.system(), ".so")
 # The kernels that the build can make, best first, and the level of processor that each needs
 LEVELS = {"native": 0, "x86-64-v4": 4, "x86-64-v3": 3, "x86-64-v2": 2}
@@ -45,22 +46,17 @@ class Relaxing(Rows):
     ``best``, ``stalled`` and ``rounds`` are the kernel's own account of each case.
     """
 
-    position: Float[np.ndarray, "case node 3"]
-    velocity: Float[np.ndarray, "case node 3"]
-    carried: Float[np.ndarray, "case bar"]
-    damping: Float[np.ndarray, " case"]
-    best: Float[np.ndarray, " case"]
-    stalled: Float[np.ndarray, " case"]
-    rounds: Float[np.ndarray, " case"]
-    residual: Float[np.ndarray, " case"]
+    position: Nodal
+    velocity: Nodal
+    carried: CaseBar
+    damping: PerCase
+    best: PerCase
+    stalled: PerCase
+    rounds: PerCase
+    residual: PerCase
 
     @classmethod
-    def begun(
-        cls,
-        position: Float[np.ndarray, "case node 3"],
-        bars: int,
-        damping: Float[np.ndarray, " case"],
-    ) -> "Relaxing":
+    def begun(cls, position: Nodal, bars: int, damping: PerCase) -> Self:
         """Cases at rest in a first shape."""
         zero, much = np.zeros(len(damping)), np.full(len(damping), 1e11)
         return cls(
@@ -95,28 +91,21 @@ class Balance:
 class Balancing(Rows):
     """Cases on their way to balance. A copy can go on later, beside other cases."""
 
-    position: Float[np.ndarray, "case node 3"]  # of the nodes [m]
+    position: Nodal  # of the nodes [m]
     # That each bar is taken to bear; above zero in those that go slack [N]
-    tension: Float[np.ndarray, "case bar"]
+    tension: CaseBar
     # Product of a slack bar's tension and the force that its slack is worth [N2]
-    barrier: Float[np.ndarray, " case"]
-    shift: Float[np.ndarray, " case"]  # added to the tangent's diagonal [N/m]
+    barrier: PerCase
+    shift: PerCase  # added to the tangent's diagonal [N/m]
     # Largest step of the last iteration along an axis, before it was shortened [m]
-    moved: Float[np.ndarray, " case"]
+    moved: PerCase
     # Of the tangent's determinant, of a case that is done where it ended [-]
-    sign: Float[np.ndarray, " case"]
-    iterations: Float[np.ndarray, " case"]  # done so far
-    residual: Float[np.ndarray, " case"]  # largest force left on a free node [N]
+    sign: PerCase
+    iterations: PerCase  # done so far
+    residual: PerCase  # largest force left on a free node [N]
 
     @classmethod
-    def begun(
-        cls,
-        position: Float[np.ndarray, "case node 3"],
-        tension: Float[np.ndarray, "case bar"],
-        *,
-        barrier: float,
-        shift: float,
-    ) -> "Balancing":
+    def begun(cls, position: Nodal, tension: CaseBar, *, barrier: float, shift: float) -> Self:
         """Cases in a first shape."""
         every = np.ones(len(position))
         return cls(

@@ -12,7 +12,11 @@ from jaxtyping import Float, Int
 from seacage.conventions import WATER_DENSITY, Rows
 from seacage.dynamics._parts import _assembly as assemblies
 
+CaseBar = Float[np.ndarray, "case bar"]
+CaseNode = Float[np.ndarray, "case node"]
+CasePanel3 = Float[np.ndarray, "case panel 3"]
 Nodal = Float[np.ndarray, "case node 3"]
+Shapes = Float[np.ndarray, "#case node 3"]  # one for all cases, or one for each
 DYNAMIC = 0.5 * WATER_DENSITY  # ½ρ [kg/m3]
 # Sum of the corners' distances from the surface, over the root of the area, below which a panel
 # counts as lying in the surface [-]
@@ -73,7 +77,7 @@ def nodal_force(assembly: assemblies.Assembly, flow: SteadyFlow, position: Nodal
     return force
 
 
-def bar_tension(bars: assemblies.Bars, position: Nodal) -> Float[np.ndarray, "case bar"]:
+def bar_tension(bars: assemblies.Bars, position: Nodal) -> CaseBar:
     """Tension of linear elastic bars; ropes and twines go slack [N]."""
     strain = assemblies.span(position, bars.ends) / bars.length - 1.0
     tension = bars.stiffness * strain
@@ -85,9 +89,7 @@ def bar_force(bars: assemblies.Bars, position: Nodal) -> Nodal:
     return bar_pull(bars, position, bar_tension(bars, position))
 
 
-def bar_pull(
-    bars: assemblies.Bars, position: Nodal, tension: Float[np.ndarray, "case bar"]
-) -> Nodal:
+def bar_pull(bars: assemblies.Bars, position: Nodal, tension: CaseBar) -> Nodal:
     """Pull of bars under given tensions on their ends [N]."""
     unit, _ = assemblies.direction(position, bars.ends)
     pull = tension[..., None] * unit
@@ -133,9 +135,7 @@ def net_force(panels: assemblies.Panels, flow: SteadyFlow, position: Nodal) -> N
     return _gather(position, panels.corners, load[:, :, None] * panels.share[..., None])
 
 
-def panel_load(
-    panels: assemblies.Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
-) -> Float[np.ndarray, "case panel 3"]:
+def panel_load(panels: assemblies.Panels, flow: SteadyFlow, position: Shapes) -> CasePanel3:
     """Drag and lift of each panel: ½ρ C_D A|u|u and ½ρ C_L A|u|² along (u×n)×u [N].
 
     The normal is turned to the flow's side, so that it does not matter which face the
@@ -146,9 +146,7 @@ def panel_load(
 
 
 def wet_share(
-    panels: assemblies.Panels,
-    position: Float[np.ndarray, "#case node 3"],
-    elevation: Float[np.ndarray, "case node"] | None = None,
+    panels: assemblies.Panels, position: Shapes, elevation: CaseNode | None = None
 ) -> Float[np.ndarray, "#case panel"]:
     """Share of each panel that the water loads, from its corners' heights over the surface [-].
 
@@ -177,10 +175,10 @@ def openness(panels: assemblies.Panels, area: Values) -> tuple[Values, Values]:
 
 def screen_load(
     panels: assemblies.Panels,
-    position: Float[np.ndarray, "#case node 3"],
+    position: Shapes,
     u: Float[np.ndarray, "case #panel 3"],
     flow: SteadyFlow,
-) -> Float[np.ndarray, "case panel 3"]:
+) -> CasePanel3:
     """``panel_load`` with a direction of the flow for each panel.
 
     A is the area as cut, not as it now is: twine is not lost where a net shrinks and folds, nor
@@ -218,9 +216,7 @@ def cylinder_force(cylinders: assemblies.Cylinders, flow: SteadyFlow, position: 
 
 
 def float_force(
-    floats: assemblies.Floats,
-    position: Nodal,
-    elevation: Float[np.ndarray, "case node"] | None = None,
+    floats: assemblies.Floats, position: Nodal, elevation: CaseNode | None = None
 ) -> Nodal:
     """Buoyancy of floats [N]; the surface lies at its elevation at each node [m]."""
     surface = 0.0 if elevation is None else elevation[:, floats.nodes]
@@ -243,9 +239,7 @@ def line_tension(assembly: assemblies.Assembly, position: Nodal) -> Float[np.nda
     return np.hstack([pull, float_lift(buoys, position[:, buoys.nodes, 2])])
 
 
-def spring_force(
-    springs: assemblies.Springs, design: Float[np.ndarray, "node 3"], position: Nodal
-) -> Nodal:
+def spring_force(springs: assemblies.Springs, design: assemblies.Node3, position: Nodal) -> Nodal:
     """Pull of the frame corners' springs [N]."""
     force = np.zeros_like(position)
     moved = position[:, springs.nodes] - design[springs.nodes]
@@ -262,7 +256,7 @@ def bed_force(ground: assemblies.Ground, position: Nodal) -> Nodal:
 
 
 def total_net_force(
-    panels: assemblies.Panels, flow: SteadyFlow, position: Float[np.ndarray, "#case node 3"]
+    panels: assemblies.Panels, flow: SteadyFlow, position: Shapes
 ) -> Float[np.ndarray, "case 3"]:
     """The water's load on the whole netting [N]."""
     return panel_load(panels, flow, position).sum(axis=1)

@@ -1,8 +1,7 @@
 """The physics of a cage that moves, readable: every force at a position and a velocity.
 
-It adds to ``_loads`` what only motion has: relative flow, damping, inertia, the surface. This
-is the definition; the compiled kernel computes the same numbers, and a property test holds the
-two together.
+It adds to the definition in ``_loads`` what only motion has: relative flow, damping, inertia, the
+surface.
 """
 
 from dataclasses import dataclass
@@ -17,11 +16,15 @@ from seacage.dynamics._parts._assembly import (
     Cylinders,
     Ground,
     Panels,
+    PerNode,
     Slender,
     direction,
 )
 from seacage.dynamics._physics._loads import (
     DYNAMIC,
+    CaseBar,
+    CaseNode,
+    CasePanel3,
     Nodal,
     SteadyFlow,
     _gather,
@@ -36,8 +39,6 @@ from seacage.dynamics._physics._loads import (
 from seacage.dynamics._physics._screens import AS_PUBLISHED, Law, Screen, Tuning, check_laws
 
 CasePanel = Float[np.ndarray, "*case panel"]
-CasePanel3 = Float[np.ndarray, "case panel 3"]
-PerNode = Float[np.ndarray, " node"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,7 +48,7 @@ class Water:
     # Of the waves [m/s, m/s2]
     velocity: Nodal
     acceleration: Nodal
-    elevation: Float[np.ndarray, "case node"]  # of the surface above still water [m]
+    elevation: CaseNode  # of the surface above still water [m]
     current: Nodal  # [m/s]
 
 
@@ -227,9 +228,7 @@ def bar_damping(bars: Bars, mass: PerNode) -> Float[np.ndarray, " bar"]:
     return 2.0 * bars.damping_ratio * np.sqrt(bars.rate * pair)
 
 
-def damped_tension(
-    bars: Bars, mass: PerNode, position: Nodal, velocity: Nodal
-) -> Float[np.ndarray, "case bar"]:
+def damped_tension(bars: Bars, mass: PerNode, position: Nodal, velocity: Nodal) -> CaseBar:
     """Tension with structural damping; a slack bar has none [N]."""
     i, j = bars.ends.T
     unit, _ = direction(position, bars.ends)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float, Int
 
+Series = Float[np.ndarray, "t line"]  # tension of each line in a simulation [N]
 TAIL = 0.8  # share of the peaks below the fifth that a Weibull line is drawn through [-]
 LEAST_TIME = 600.0  # simulated time below which there is no estimate [s]
 LEAST_PEAKS = 50  # peaks below which there is no estimate
@@ -27,11 +28,7 @@ class Extremes:
 
 
 def extremes(
-    tension: Sequence[Float[np.ndarray, "t line"]],
-    *,
-    every: float,
-    hours: float = 3.0,
-    has_waves: bool = True,
+    tension: Sequence[Series], *, every: float, hours: float = 3.0, has_waves: bool = True
 ) -> Extremes:
     """Extremes of a stationary sea from simulations of it.
 

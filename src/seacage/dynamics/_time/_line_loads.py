@@ -9,7 +9,7 @@ from jaxtyping import Bool, Float
 from seacage.cage import MooringLines
 from seacage.conventions import YEAR
 from seacage.dynamics._moored._ends import SLACK
-from seacage.dynamics._time._extremes import Extremes, extremes
+from seacage.dynamics._time._extremes import Extremes, Series, extremes
 from seacage.dynamics._time._statistics import Statistics
 
 FREQUENCY = 1.0  # of the equivalent load's cycles [Hz]
@@ -71,7 +71,7 @@ class LineLoads:
 def line_loads(
     lines: MooringLines,
     statistics: Statistics,
-    tension: Float[np.ndarray, "t line"],
+    tension: Series,
     *,
     anchor_pull: Float[np.ndarray, "line 3"],
     uplift: Float[np.ndarray, " line"],
@@ -114,10 +114,7 @@ def _snaps(slack: Bool[np.ndarray, " t"], tension: Float[np.ndarray, " t"]) -> i
 
 
 def damage_equivalent_load(
-    tension: Sequence[Float[np.ndarray, "t line"]],
-    slope: Float[np.ndarray, " line"],
-    *,
-    every: float,
+    tension: Sequence[Series], slope: Float[np.ndarray, " line"], *, every: float
 ) -> Float[np.ndarray, " line"]:
     """Range of the constant cycles at 1 Hz that wear each line as its own tension does [N].
 
