@@ -17,7 +17,13 @@ from seacage.surrogates._gp._kernels import (
     StationaryKernel,
     restore_kernel,
 )
-from seacage.surrogates._gp._noise import CORRELATED, NoiseName, noise_named, restore_noise
+from seacage.surrogates._gp._noise import (
+    CORRELATED,
+    NoiseByInput,
+    NoiseName,
+    noise_named,
+    restore_noise,
+)
 from seacage.surrogates._gp._posterior import Posterior, Process
 from seacage.surrogates._prediction import Moments, Prediction, check_inputs, check_outputs
 from seacage.surrogates._scaling import Scaling
@@ -251,16 +257,7 @@ class FittedGaussianProcess:
 
     def kept(self, cases: Bool[np.ndarray, " n"]) -> Self:
         """Conditioned on some of its cases alone, with the hyperparameters of all."""
-        members = [
-            member.condition(
-                member.x[cases],
-                member.observations()[cases],
-                noise_factor=member.noise_factor[cases],
-                time=member.time[cases],
-            )
-            for member in self.members
-        ]
-        return replace(self, members=tuple(members))
+        return self._conditioned(self.posterior.x, cases)
 
     def cases(self) -> Float[np.ndarray, "n feature"]:
         """Inputs that it is conditioned on, in their own units."""
@@ -268,13 +265,16 @@ class FittedGaussianProcess:
 
     def moved(self, x: Float[np.ndarray, "n feature"]) -> Self:
         """Conditioned on the same outputs at other inputs, one row for each case."""
-        x = self.inputs.standardise(x)
+        return self._conditioned(self.inputs.standardise(x), np.ones(len(x), dtype=bool))
+
+    def _conditioned(self, x: RowFeature, cases: Bool[np.ndarray, " row"]) -> Self:
+        """Conditioned on some of its cases at these standardised inputs."""
         members = [
             member.condition(
-                x,
-                member.observations() + (member.x - x) @ self.line,
-                noise_factor=member.noise_factor,
-                time=member.time,
+                x[cases],
+                (member.observations() + (member.x - x) @ self.line)[cases],
+                noise_factor=member.noise_factor[cases],
+                time=member.time[cases],
             )
             for member in self.members
         ]
@@ -321,11 +321,12 @@ class FittedGaussianProcess:
     def to_arrays(self) -> tuple[Settings, Arrays]:
         """Everything that ``from_arrays`` needs, as plain values and float64 arrays."""
         first, kernels = self.posterior, [member.kernel.name for member in self.members]
+        several = len(set(kernels)) > 1
         most = max(len(member.log_parameters) for member in self.members)
         settings: Settings = {
             "model": self.MODEL,
             # Versions that know of one kernel refuse the name of several.
-            "kernel": kernels[0] if len(set(kernels)) == 1 else ",".join(kernels),
+            "kernel": ",".join(kernels) if several else kernels[0],
             "noise": first.noise.name,
             "single": self.single,
             "about_line": bool(self.line.any()),
@@ -347,12 +348,13 @@ class FittedGaussianProcess:
         }
         if self.line.any():
             arrays["line"] = self.line
-        if len(set(kernels)) > 1:
+        if several:
             arrays["factor"] = self.factor
         if first.noise.name == CORRELATED:
             arrays |= {"time": first.time, "clock": np.array([self.clock.begin, self.clock.step])}
-        anchor = first.noise.anchor
-        return settings, arrays | ({"anchor": anchor} if anchor.size else {})
+        if isinstance(first.noise, NoiseByInput):
+            arrays["anchor"] = first.noise.anchor
+        return settings, arrays
 
     @classmethod
     def from_arrays(

@@ -64,11 +64,6 @@ class AbstractNoise(ABC):
         """How many of its first log parameters are log variances."""
         return 1
 
-    @property
-    def anchor(self) -> Float[np.ndarray, "anchor feature"]:
-        """Places that it is learned at; a noise without any has none."""
-        return np.empty((0, 0))
-
 
 @dataclass(frozen=True, slots=True)
 class WhiteNoise(AbstractNoise):
@@ -175,14 +170,10 @@ class NoiseByInput(AbstractNoise):
 
     name: ClassVar[str] = "by-input"
 
-    places: Float[np.ndarray, "anchor feature"]
-
-    @property
-    def anchor(self) -> Float[np.ndarray, "anchor feature"]:
-        return self.places
+    anchor: Float[np.ndarray, "anchor feature"]
 
     def prior(self) -> Prior:
-        return Prior.of(NOISE_PRIOR, *[(0.0, 1.0)] * len(self.places))
+        return Prior.of(NOISE_PRIOR, *[(0.0, 1.0)] * len(self.anchor))
 
     def variance(self, log_parameters: PerParameter, x: RowFeature) -> RowOutput:
         return np.exp(self._basis(x) @ log_parameters)[:, None]
@@ -197,10 +188,10 @@ class NoiseByInput(AbstractNoise):
         parameters = np.zeros(1 + x.shape[1])
         parameters[0] = 2.0 * math.log(SWING)
         parameters[1:] = 0.5 * math.log(x.shape[1])
-        within = kernel.covariance(parameters, self.places, self.places)
+        within = kernel.covariance(parameters, self.anchor, self.anchor)
         within[np.diag_indices_from(within)] *= 1.0 + 1e-8
         lower = scipy.linalg.cholesky(within, lower=True, check_finite=False)
-        cross = kernel.covariance(parameters, self.places, x)
+        cross = kernel.covariance(parameters, self.anchor, x)
         smooth = scipy.linalg.solve_triangular(lower, cross, lower=True, check_finite=False).T
         return np.column_stack([np.ones(len(x)), smooth])
 
@@ -215,21 +206,16 @@ def restore_noise(
     name: str, anchor: Callable[[], Float[np.ndarray, "anchor feature"]], *, outputs: int
 ) -> AbstractNoise:
     """Noise of a saved model, of so many outputs and with the anchors that were saved."""
-    match name:
-        case "white":
-            return WhiteNoise()
-        case "student-t":
-            return StudentNoise()
-        case "per-output":
-            return NoisePerOutput(outputs)
-        case "correlated":
-            return CorrelatedNoise()
-        case "by-input":
-            return NoiseByInput(anchor())
-        case _:
-            raise ModelError(
-                f"The saved model has noise {name!r}, which this version does not know."
-            )
+    kinds: dict[str, Callable[[], AbstractNoise]] = {
+        "white": WhiteNoise,
+        "student-t": StudentNoise,
+        "per-output": lambda: NoisePerOutput(outputs),
+        CORRELATED: CorrelatedNoise,
+        "by-input": lambda: NoiseByInput(anchor()),
+    }
+    if name not in kinds:
+        raise ModelError(f"The saved model has noise {name!r}, which this version does not know.")
+    return kinds[name]()
 
 
 def noise_factor_of(
