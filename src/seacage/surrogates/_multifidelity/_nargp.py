@@ -47,7 +47,9 @@ SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature
 # upper one's spread
 ALIKE = 0.5
 
-# Kernels of a level, from the log lengths below and whether it is like the level below
+# Covariances of a level over its inputs and the level below, from the log lengths of the lowest
+# level in spreads of this level's inputs, empty where a lent one has none, and whether the level
+# below explains most of this one as it is
 MODELS: Mapping[ModelName, Callable[[tuple[float, ...], bool], LinkKernel]] = {
     "nargp": lambda lengths, alike: autoregressive(linear=True, lengths=lengths, alike=alike),
     "nargp-published": lambda lengths, _: autoregressive(linear=False, lengths=lengths),
@@ -72,12 +74,8 @@ class AbstractMultifidelity(ABC):
         _gp.check_options(noise=self.noise, ensemble=self.ensemble, restarts=self.restarts)
 
     @abstractmethod
-    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
-        """Covariances of a level over its inputs and the level below, which are averaged.
-
-        ``lengths``: log lengths of the lowest level, in spreads of this level's inputs; empty where
-        a lent one has none. ``alike``: whether the level below explains most of this one as it is.
-        """
+    def kernel_names(self) -> Sequence[ModelName]:
+        """Kernels of each upper level, whose processes are averaged."""
 
     def fit(
         self,
@@ -112,6 +110,7 @@ class AbstractMultifidelity(ABC):
         seeds = np.random.SeedSequence(seed).generate_state(len(cases)).tolist()
         fitted = FittedNARGP(own=(), lent=lower, nested=nested)
         for index, (x, y) in enumerate(cases):
+            last = index == len(cases) - 1
             kernels: Sequence[_gp.AbstractKernel] = [_gp.StationaryKernel("squared-exponential")]
             inputs, slope = x, np.zeros(x.shape[1])
             if fitted.levels:
@@ -120,7 +119,8 @@ class AbstractMultifidelity(ABC):
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
                 alike = bool(np.std(y - below) < ALIKE * np.std(y))
-                kernels = links = self.links(_lengths_below(fitted, x), alike=alike)
+                lengths = _lengths_below(fitted, x)
+                kernels = links = [MODELS[name](lengths, alike) for name in self.kernel_names()]
                 inputs, slope = np.column_stack([x, below]), np.append(slope, links[0].ratio)
             added = [
                 _gp.fit_process(
@@ -132,14 +132,13 @@ class AbstractMultifidelity(ABC):
                     slope=slope,
                     restarts=self.restarts,
                     seed=seeds[index],
-                    time=time if index == len(cases) - 1 else None,
+                    time=time if last else None,
                 )
                 for kernel in kernels
             ]
             models = [replace(fitted, own=(*fitted.own, one)) for one in added]
             fitted = models[0]
             if len(models) > 1:
-                last = index == len(cases) - 1
                 out = folds if folds and last else Folds.random(len(y), seed=seeds[index])
                 density = np.stack([model.fold_density(y, out) for model in models])
                 together = _gp.average(added, pseudo_bma(density, out.independent))
@@ -168,8 +167,8 @@ class NARGP(AbstractMultifidelity):
 
     linear: bool = True
 
-    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
-        return [autoregressive(linear=self.linear, lengths=lengths, alike=alike)]
+    def kernel_names(self) -> Sequence[ModelName]:
+        return ["nargp" if self.linear else "nargp-published"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -187,8 +186,8 @@ class AR1(AbstractMultifidelity):
     Uncertainty Quantification 4:365-386, for the recursion.
     """
 
-    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:  # noqa: ARG002
-        return [straight()]
+    def kernel_names(self) -> Sequence[ModelName]:
+        return ["ar1"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -217,8 +216,8 @@ class ModelAverage(AbstractMultifidelity):
                 f"{', '.join(MODELS)}, and no other."
             )
 
-    def links(self, lengths: tuple[float, ...], *, alike: bool) -> Sequence[LinkKernel]:
-        return [MODELS[name](lengths, alike) for name in self.models]
+    def kernel_names(self) -> Sequence[ModelName]:
+        return self.models
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -418,7 +417,6 @@ class FittedNARGP:
         Raises ModelError: a part is missing or damaged, or ``lower`` is given or left out against
         the settings.
 
-        ``settings``, ``arrays``: as ``to_arrays`` gave them.
         ``lower``: level 1, where another model had lent it.
         """
         lent = setting(settings, "lent", bool)
