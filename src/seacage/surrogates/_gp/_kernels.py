@@ -331,7 +331,13 @@ class AbstractComposition(AbstractKernel):
 class Sum(AbstractComposition):
     """The sum of two kernels: of independent processes that add."""
 
+    label: str = ""  # its name, where it has one of its own
+
     join, join_values = operator.add, np.add
+
+    @property
+    def name(self) -> str:
+        return self.label or type(self).__name__
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,12 +19,6 @@ class CaseKernel(gp.Sum):
     ``other`` has one hyperparameter, the last one.
     """
 
-    saved_as: str
-
-    @property
-    def name(self) -> str:
-        return self.saved_as
-
     def quotient(self, x: Float[np.ndarray, "n 10"]) -> Int[np.ndarray, "image image"] | None:
         """Of all images of each case, where the rows are those, turned or mirrored."""
         count = int(np.sum(x[:, -1] == x[0, -1]))
@@ -39,8 +33,8 @@ class CaseKernel(gp.Sum):
         return seen.argmin(axis=2) if misfit < SAME_IMAGE else None
 
 
-def _with_case(of_sea: gp.AbstractKernel, saved_as: str) -> CaseKernel:
-    return CaseKernel(of_sea, gp.Columns(gp.SameCase(), slice(-1, None)), saved_as)
+def _with_case(of_sea: gp.AbstractKernel, label: str) -> CaseKernel:
+    return CaseKernel(of_sea, gp.Columns(gp.SameCase(), slice(-1, None)), label)
 
 
 # Columns of ``case_inputs``, and of each the number of its length: a vector's components have one,

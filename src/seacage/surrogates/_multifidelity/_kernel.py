@@ -125,15 +125,10 @@ class LinearKernel(_gp.AbstractKernel):
 class LinkKernel(_gp.Sum):
     """Covariance of a level over (x, f), f being the level below: the last feature."""
 
-    kind: str  # name under which a saved model finds it again
     ratio: float = 0.0  # expected change of the level per change of the one below
     # Whether the level bends with the one below, over a length that comes first after rho's
     # hyperparameters
     bends: bool = True
-
-    @property
-    def name(self) -> str:
-        return self.kind
 
 
 def autoregressive(
