@@ -1,7 +1,7 @@
 """Principal components of node positions: a shape as a few scores."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import ClassVar, Self
 
 import numpy as np
@@ -48,6 +48,19 @@ class Modes:
         kept = replace(self, direction=self.direction[:modes])
         missed = shape - kept.decode(kept.encode(shape))
         return replace(kept, truncation=np.sqrt(np.mean(missed**2, axis=0)))
+
+    def to_arrays(self) -> Arrays:
+        """By the names of its parts."""
+        return {one.name: getattr(self, one.name) for one in fields(self)}
+
+    @classmethod
+    def from_arrays(cls, arrays: Mapping[str, np.ndarray], *, modes: int) -> Self:
+        """The other way. Raises ModelError: an array is missing, misshapen, or not finite."""
+        direction = array(arrays, "direction", modes, None)
+        centre, truncation = (
+            array(arrays, name, direction.shape[1]) for name in ("centre", "truncation")
+        )
+        return cls(centre=centre, direction=direction, truncation=truncation)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -302,34 +315,14 @@ class FittedPcaGP:
             "explained_variance": self.explained_variance,
             "scores": scores,
         }
-        return settings, modes_to_arrays(self.basis) | arrays
+        return settings, self.basis.to_arrays() | arrays
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
         """The model that ``to_arrays`` described; ``ModelError`` where it is damaged."""
         scores = _gp.processes_from_arrays(settings, "scores", arrays)
         return cls(
-            basis=modes_from_arrays(arrays, modes=len(scores)),
+            basis=Modes.from_arrays(arrays, modes=len(scores)),
             scores=scores,
             explained_variance=setting(settings, "explained_variance", float),
         )
-
-
-def modes_to_arrays(modes: Modes) -> Arrays:
-    """Of a model that holds them."""
-    return {
-        "centre": modes.centre,
-        "direction": np.ascontiguousarray(modes.direction),
-        "truncation": modes.truncation,
-    }
-
-
-def modes_from_arrays(arrays: Mapping[str, np.ndarray], *, modes: int) -> Modes:
-    """The other way. Raises ModelError: an array is missing, of another shape, or not finite."""
-    direction = array(arrays, "direction", modes, None)
-    coordinates = direction.shape[1]
-    return Modes(
-        centre=array(arrays, "centre", coordinates),
-        direction=direction,
-        truncation=array(arrays, "truncation", coordinates),
-    )

@@ -12,7 +12,7 @@ from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, array, setting
 from seacage.surrogates._features import check_turnable
 from seacage.surrogates._prediction import Prediction, check_inputs, check_shapes
-from seacage.surrogates._shape._pca import Modes, modes_from_arrays, modes_to_arrays, modes_within
+from seacage.surrogates._shape._pca import Modes, modes_within
 from seacage.surrogates._shape._symmetry import Symmetry
 
 NFeature = Float[np.ndarray, "n feature"]
@@ -229,7 +229,7 @@ class FittedShapeGP:
         }
         own = {"mean_shape": self.centre, "left_out": self.left_out, "scale": self.scale}
         symmetry = {} if self.symmetry is None else self.symmetry.to_arrays()
-        return settings, modes_to_arrays(self.basis) | own | symmetry | arrays
+        return settings, self.basis.to_arrays() | own | symmetry | arrays
 
     @classmethod
     def from_arrays(cls, settings: Mapping[str, object], arrays: Mapping[str, np.ndarray]) -> Self:
@@ -245,7 +245,7 @@ class FittedShapeGP:
             )
         centre = array(arrays, "mean_shape", None, 3)
         nodes = len(centre)
-        basis = modes_from_arrays(arrays, modes=len(scores.centre))
+        basis = Modes.from_arrays(arrays, modes=len(scores.centre))
         if len(basis.centre) != 3 * nodes:
             raise ModelError(
                 f"The saved ShapeGP has modes of {len(basis.centre)} coordinates, but {nodes} "
