@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from jaxtyping import Float
@@ -107,16 +107,9 @@ class Process:
     def _posterior(
         self, x: NFeature, noise_factor: PerN, time: PerN, weights: NOutput, factor: Factor
     ) -> "Posterior":
+        own = {one.name: getattr(self, one.name) for one in fields(Process)}
         return Posterior(
-            kernel=self.kernel,
-            log_parameters=self.log_parameters,
-            noise=self.noise,
-            log_noise=self.log_noise,
-            x=x,
-            noise_factor=noise_factor,
-            time=time,
-            weights=weights,
-            factor=factor,
+            **own, x=x, noise_factor=noise_factor, time=time, weights=weights, factor=factor
         )
 
 

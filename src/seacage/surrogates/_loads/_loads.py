@@ -112,10 +112,8 @@ class LoadPrediction(Rows):
             for _ in range(2 * HALVINGS):
                 middle = 0.5 * (least + most)
                 exceeded = share * np.exp(np.minimum((mode - middle) / scale, 600.0)).sum(axis=0)
-                most, least = (
-                    np.where(exceeded > rate, most, middle),
-                    np.where(exceeded > rate, middle, least),
-                )
+                beyond = exceeded > rate
+                most, least = np.where(beyond, most, middle), np.where(beyond, middle, least)
             crossing[row] = most
         decay, base, about = crossing[1] - crossing[0], self.base.mean(axis=0), self.discrepancy
         size = np.maximum(crossing[0] + EULER * decay - base, 0.0) + self.offset

@@ -68,10 +68,8 @@ class FittedMotionGP:
         ``x``: from ``sea_features``.
         ``hs``: wave height where it is lower than in ``x``, else the same [m].
         """
-        log = (
-            self.centre
-            + self.process.mean(case_inputs(x)).reshape(len(x), len(self.mode)) @ self.mode
-        )
+        coefficients = self.process.mean(case_inputs(x)).reshape(len(x), len(self.mode))
+        log = self.centre + coefficients @ self.mode
         motion = np.maximum(x[:, [HEIGHT]] * np.exp(log) - self.offset, 0.0)
         scaled = motion * (hs / x[:, HEIGHT])[:, None]
         return np.stack(np.split(scaled, 2, axis=1), axis=-1)
