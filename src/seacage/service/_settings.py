@@ -5,7 +5,7 @@ from ipaddress import ip_network
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, model_validator
+from pydantic import AfterValidator, Field, ValidationError, model_validator
 from pydantic_settings import BaseSettings, InitSettingsSource, SettingsConfigDict
 
 from seacage.conventions import InputError, parse_toml, read_text
@@ -13,17 +13,14 @@ from seacage.service._auth._limits import Limits
 from seacage.service._mqtt._topics import Name
 from seacage.service._publish._opcua_settings import OpcUaSettings
 from seacage.service._publish._post import Webhook
+from seacage.service._schemas._base import AbstractSection
 
 _LOOPBACK = ("127.0.0.1", "::1", "localhost")
 # An address, or a network as ``10.0.0.0/8``
 Network = Annotated[str, AfterValidator(lambda text: str(ip_network(text)))]
 
 
-class _Section(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-
-class StoreSection(_Section):
+class StoreSection(AbstractSection):
     """The section ``[store]``."""
 
     # ``postgresql://user@host/name``, or a path for SQLite; in the data folder if left out
@@ -40,7 +37,7 @@ class StoreSection(_Section):
         return self
 
 
-class MqttSection(_Section):
+class MqttSection(AbstractSection):
     """The section ``[mqtt]``."""
 
     # ``mqtt://host:1883`` or ``mqtts://user:password@host:8883``; a password is better given in the
@@ -58,14 +55,14 @@ class MqttSection(_Section):
     home_assistant: Name | None = None
 
 
-class TailSection(_Section):
+class TailSection(AbstractSection):
     """One ``[[cages.tail]]``: a table that a logger appends to."""
 
     path: Path  # of the file; it may come later
     stream: Name = "buoy-1"  # what its rows are readings of
 
 
-class CageSection(_Section):
+class CageSection(AbstractSection):
     """One ``[[cages]]``."""
 
     twin: Path  # folder of its trained twin

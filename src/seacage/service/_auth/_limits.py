@@ -3,16 +3,16 @@
 from collections import OrderedDict
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from seacage.service._schemas._base import AbstractSection
 
 Origin = Annotated[str, Field(pattern=r"^https?://[A-Za-z0-9.\-\[\]:]+$", max_length=300)]
 _MOST_ASKERS = 10_000
 
 
-class Limits(BaseModel):
+class Limits(AbstractSection):
     """The section ``[limits]``; what comes beyond a limit is answered 413 or 429."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     # Of one token, in the long run and at once
     requests_per_s: float = Field(default=200.0, gt=0.0, le=1e6)

@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
+
+from seacage.service._schemas._base import AbstractSection
 
 
-class OpcUaSettings(BaseModel):
+class OpcUaSettings(AbstractSection):
     """The section ``[opcua]``."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     # Where it listens
     host: str = "127.0.0.1"

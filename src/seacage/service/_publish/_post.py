@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from typing import Annotated
 from urllib.parse import quote, urlsplit
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, Field
 
 from seacage.conventions import InputError
 from seacage.service._mqtt._topics import Name
+from seacage.service._schemas._base import AbstractSection
 
 _KINDS = {"http": http.client.HTTPConnection, "https": http.client.HTTPSConnection}
 # What ``post`` raises where nobody answers, or not in HTTP
@@ -49,10 +50,8 @@ def _check_address(url: str) -> str:
     return url
 
 
-class Webhook(BaseModel):
+class Webhook(AbstractSection):
     """One ``[[webhooks]]``: an address that alarms are posted to as JSON."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
 
     url: Annotated[str, AfterValidator(_check_address)]  # http or https
     severity: int = Field(default=500, ge=1, le=1000)  # the least that is posted, 1 to 1000

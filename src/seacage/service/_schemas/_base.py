@@ -1,4 +1,4 @@
-"""What the JSON bodies share, names, times and strictness, and those of the service itself."""
+"""What JSON bodies and settings share, names, times and strictness, and bodies of the service."""
 
 from datetime import UTC, datetime
 from typing import Annotated, Any
@@ -48,6 +48,12 @@ class AbstractRequest(BaseModel):
     """A body that is sent: nothing is converted, and nothing unknown is let pass."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+
+class AbstractSection(BaseModel):
+    """A section of the settings: nothing unknown is let pass."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
 
 class AbstractAnswer(BaseModel):
