@@ -67,8 +67,7 @@ class Gate:
         if token is not None:
             grant = self.tokens.grant(token)
             return None if grant is None else (grant, None)
-        found = self.sessions.find(cookie, datetime.now(UTC)) if cookie else None
-        return None if found is None else (found[1], found[0])
+        return self.sessions.find(cookie, datetime.now(UTC)) if cookie else None
 
     def admit(self, connection: HTTPConnection) -> tuple[Grant, Session | None]:
         """Find who asks, by what the headers carry. Raises HTTPException: as for ``refuse``."""

@@ -24,8 +24,6 @@ _log = structlog.get_logger(__name__)
 class Session:
     """Somebody who has signed in."""
 
-    # Of the token that was given; once it is revoked the session is worth nothing
-    token_sha256: str
     csrf: str  # what a write has to repeat in a header, for a cookie is sent by itself
     expires: datetime
 
@@ -52,13 +50,13 @@ class Sessions:
     def renew(self, cookie: str, now: datetime) -> Session | None:
         """Let a session last anew; None where it or its token has ended."""
         found = self.find(cookie, now)
-        return None if found is None else self._session_of(cookie, found[0].token_sha256, now)
+        return None if found is None else self._session_of(cookie, found[0].sha256, now)
 
-    def find(self, cookie: str, now: datetime) -> tuple[Session, Grant] | None:
+    def find(self, cookie: str, now: datetime) -> tuple[Grant, Session] | None:
         """Find who a cookie stands for; None where it or its token has ended."""
         token_sha256, expires = self._open.get(digest(cookie), ("", now))
         grant = self._tokens.grant_of(token_sha256) if expires > now else None
-        return None if grant is None else (_session(cookie, token_sha256, expires), grant)
+        return None if grant is None else (grant, _session(cookie, expires))
 
     def end(self, cookie: str) -> None:
         """Close a session, if there is one."""
@@ -74,13 +72,12 @@ class Sessions:
             self._open[digest(cookie)] = token_sha256, expires
             self._open.move_to_end(digest(cookie))
             own = Counter(token for token, _ in self._open.values())
-            most = own.most_common(1)[0][0]  # who has most loses one where there are too many
             if own[token_sha256] > self._most:
                 self._end_oldest(token_sha256)
             elif len(self._open) > _MOST_SESSIONS:
-                self._end_oldest(most)
+                self._end_oldest(own.most_common(1)[0][0])  # who has most loses one
             self._write()
-        return _session(cookie, token_sha256, expires)
+        return _session(cookie, expires)
 
     def _end_oldest(self, token_sha256: str) -> None:
         del self._open[next(key for key, (of, _) in self._open.items() if of == token_sha256)]
@@ -94,10 +91,10 @@ class Sessions:
             _log.warning("the sessions are not kept", file=str(self._path), error=str(error))
 
 
-def _session(cookie: str, token_sha256: str, expires: datetime) -> Session:
+def _session(cookie: str, expires: datetime) -> Session:
     # Made from the cookie, so that no file holds what a write repeats.
     csrf = hmac.new(cookie.encode(), b"csrf", "sha256").hexdigest()
-    return Session(token_sha256=token_sha256, csrf=csrf, expires=expires)
+    return Session(csrf=csrf, expires=expires)
 
 
 def _read(path: Path) -> OrderedDict[str, tuple[str, datetime]]:

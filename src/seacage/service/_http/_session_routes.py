@@ -40,7 +40,7 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> Session
 @sessions.get("", responses=REFUSED)
 async def who_am_i(request: Request, response: Response, cookie: Cookie) -> SessionOut:
     """Say who is signed in, as a page asks that was loaded again; the session lasts anew."""
-    session, grant = _session(request, cookie)
+    grant, session = _session(request, cookie)
     assert cookie is not None
     renew = gate_of(request).sessions.renew
     session = await asyncio.to_thread(renew, cookie, datetime.now(UTC)) or session
@@ -51,7 +51,7 @@ async def who_am_i(request: Request, response: Response, cookie: Cookie) -> Sess
 @sessions.delete("", status_code=204, responses=REFUSED)
 async def sign_out(request: Request, response: Response, cookie: Cookie, _: Csrf = None) -> None:
     """End the session."""
-    session, grant = _session(request, cookie)
+    grant, session = _session(request, cookie)
     _remember(request, grant)
     check_csrf(request, session)
     await asyncio.to_thread(gate_of(request).sessions.end, cookie or "")
@@ -69,13 +69,13 @@ def _hand_over(request: Request, response: Response, cookie: str) -> None:
     )
 
 
-def _session(request: Request, cookie: str | None) -> tuple[Session, Grant]:
+def _session(request: Request, cookie: str | None) -> tuple[Grant, Session]:
     gate = gate_of(request)
     found = gate.identify(None, cookie)
     if found is None or found[1] is None:
         gate.refuse(source_of(request), sent=bool(cookie))
     gate.pace(found[0])
-    return found[1], found[0]
+    return found[0], found[1]
 
 
 def _remember(request: Request, grant: Grant) -> None:

@@ -20,7 +20,7 @@ def grant_in(tokens, **how):
 def test_a_cookie_stands_for_its_token_until_the_session_ends(tokens):
     sessions, grant = Sessions(tokens, lasting_s=60.0), grant_in(tokens)
     cookie, session = sessions.begin(grant, NOON)
-    assert sessions.find(cookie, NOON) == (session, grant)
+    assert sessions.find(cookie, NOON) == (grant, session)
     assert sessions.find(cookie, NOON + timedelta(seconds=60)) is None
     sessions.end(cookie)
     assert sessions.find(cookie, NOON) is None
@@ -66,7 +66,7 @@ def test_a_session_that_has_ended_takes_no_room(tokens):
 def test_a_service_that_is_started_again_knows_its_sessions(tokens, tmp_path):
     cookie, session = Sessions(tokens, lasting_s=60.0).begin(grant_in(tokens), NOON)
     again = Sessions(Tokens(tmp_path), lasting_s=60.0)
-    assert again.find(cookie, NOON)[0] == session
+    assert again.find(cookie, NOON)[1] == session
     again.end(cookie)
     assert Sessions(tokens, lasting_s=60.0).find(cookie, NOON) is None
 
