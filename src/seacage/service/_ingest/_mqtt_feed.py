@@ -11,6 +11,7 @@ from pathlib import Path
 
 import structlog
 
+from seacage.conventions import InputError
 from seacage.records import Sample
 from seacage.service._live._alarm_desk import Announcement, announcement_json
 from seacage.service._live._cage import LiveCage
@@ -43,8 +44,8 @@ class _Taken:
     message: Received
     cage: str
     stream: str
-    samples: tuple[Sample, ...]
-    refused: tuple[Settled, ...]
+    samples: list[Sample]
+    refused: list[Settled]
 
     @property
     def outcomes(self) -> list[Settled]:
@@ -140,16 +141,14 @@ class MqttFeed:
             for cage in self._cages.values():
                 work.create_task(self._publish_states(cage))
 
-    def publish_alarms(self, cage: str, lines: Sequence[str]) -> None:
-        """Publish lines of a cage's journal, each as its JSON; kept while the broker is away."""
-        topic = self._topics.outgoing(cage, "alarms")
-        self._alarms.extend((topic, line.encode()) for line in lines)
+    def publish_alarm(self, cage: str, line: str) -> None:
+        """Publish a line of a cage's journal, as its JSON; kept while the broker is away."""
+        self._alarms.append((self._topics.outgoing(cage, "alarms"), line.encode()))
         self._say_alarms()
 
     def _queue_announcement(self, event: Announcement) -> None:
         # Called in the thread that stepped the twin, and the link is the loop's.
-        lines = [announcement_json(event)]
-        self._loop.call_soon_threadsafe(self.publish_alarms, event.cage, lines)
+        self._loop.call_soon_threadsafe(self.publish_alarm, event.cage, announcement_json(event))
 
     def _queue_message(self, message: Received) -> None:
         """Queue a message; one that nobody waits for is dropped where the queue is full."""
@@ -219,21 +218,22 @@ class MqttFeed:
         cage = self._cages.get(address.cage) if address else None
         if address is None or cage is None:
             return self._set_aside(message, "No cage of this service is meant by the topic.")
-        read = read_observed(
-            address.stream, message.payload, cage.streams, until=cage.latest_allowed
-        )
-        if read.fault:
-            return self._set_aside(message, read.fault)
-        for one in read.refused:
+        try:
+            samples, refused = read_observed(
+                address.stream, message.payload, cage.streams, until=cage.latest_allowed
+            )
+        except InputError as error:
+            return self._set_aside(message, str(error))
+        for one in refused:
             if one.retry:  # its sender keeps it and tries again and again
                 cage.refuse_ahead(one.stream, one.t)
                 continue
             self._quarantine.put(
                 message.topic, message.payload, one.rejected or "", now=cage.clock.now()
             )
-        if read.samples and cage.clock.now() - read.samples[-1].t > _OLD:
+        if samples and cage.clock.now() - samples[-1].t > _OLD:
             self._fall_behind()
-        return _Taken(message, cage.name, address.stream, read.samples, read.refused)
+        return _Taken(message, cage.name, address.stream, samples, refused)
 
     def _set_aside(self, message: Received, reason: str) -> None:
         now = next(iter(self._cages.values())).clock.now()

@@ -47,42 +47,32 @@ class Settled:
     retry: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Observed:
-    """A message of samples, read: those that can be stored, and those refused.
-
-    ``fault`` says why nothing of the message could be read.
-    """
-
-    samples: tuple[Sample, ...] = ()
-    refused: tuple[Settled, ...] = ()
-    fault: str | None = None
-
-
 def read_observed(
     stream: str, payload: bytes, streams: Mapping[str, tuple[str, ...]], *, until: datetime
-) -> Observed:
-    """Read a message of samples; whatever its bytes are, nothing is raised.
+) -> tuple[list[Sample], list[Settled]]:
+    """Read a message of samples: those that can be stored, and those refused.
 
     ``stream``: whose topic it came by.
     ``payload``: ``{"t": …, "seq": …, "values": {…}}``, or a list of such.
     ``streams`` and ``until``: as for ``read_samples``.
+
+    Raises InputError: nothing of the message can be read.
     """
     if len(payload) > LARGEST:
-        return Observed(fault=f"{len(payload)} bytes are more than {LARGEST} of one message.")
+        raise InputError(f"{len(payload)} bytes are more than {LARGEST} of one message.")
     try:
         read = _OBSERVED.validate_json(_as_list(payload))
     except ValidationError as error:
-        return Observed(fault=_first(error))
+        raise InputError(_first(error)) from error
     # Pydantic has just looked at t, seq and values; the stream is the topic's, however odd.
     received = [SampleIn.model_construct(stream=stream, **dict(one)) for one in read]
     samples, rejected = read_samples(received, streams, until=until)
-    refused = tuple(
+    refused = [
         Settled(stream=stream, t=one.t, seq=one.seq, rejected=why.reason, retry=why.retry)
         for why in rejected
         for one in (read[why.index],)
-    )
-    return Observed(samples=tuple(samples), refused=refused)
+    ]
+    return samples, refused
 
 
 def samples_text(samples: Sequence[Sample]) -> bytes:

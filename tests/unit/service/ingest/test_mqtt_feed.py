@@ -319,9 +319,9 @@ def test_while_old_samples_come_there_is_a_second_connection_and_then_no_more(on
 
 def test_journal_lines_wait_for_a_broker(one):
     one.sent.publish = lambda *_, **__: False
-    one.feed.publish_alarms("ace", ['{"alarm": "load.bridle-3"}'])
+    one.feed.publish_alarm("ace", '{"alarm": "load.bridle-3"}')
     del one.sent.publish
-    one.feed.publish_alarms("ace", ['{"alarm": "net.net"}'])
+    one.feed.publish_alarm("ace", '{"alarm": "net.net"}')
     assert [line["alarm"] for _, line in one.sent] == ["load.bridle-3", "net.net"]
     assert {topic for topic, _ in one.sent} == {"seacage/v1/south/ace/alarms"}
 
