@@ -198,20 +198,16 @@ class Spool:
             self._forget(kept)
 
     def close(self) -> None:
-        """Close the file."""
         with self._lock:
             self._connection.close()
 
     @contextmanager
     def _transaction(self) -> Generator[None]:
-        connection, counts = self._connection, (self._count, self.ahead)
+        counts = self._count, self.ahead
         try:
-            connection.execute("BEGIN IMMEDIATE")
-            yield
-            connection.execute("COMMIT")
+            with self._connection:
+                yield
         except sqlite3.Error as error:
-            if connection.in_transaction:
-                connection.execute("ROLLBACK")
             self._count, self.ahead = counts
             raise SpoolError(f"{self._path} takes nothing ({error}). Free the disk.") from error
 
@@ -226,7 +222,9 @@ class Spool:
 
 
 def _open(path: Path) -> sqlite3.Connection:
-    connection = sqlite3.connect(path, isolation_level=None, check_same_thread=False, timeout=1.0)
+    connection = sqlite3.connect(
+        path, isolation_level="IMMEDIATE", check_same_thread=False, timeout=1.0
+    )
     with close_on_error(connection):
         connection.text_factory = partial(str, encoding="utf-8", errors="replace")
         connection.execute("PRAGMA locking_mode = EXCLUSIVE")

@@ -108,7 +108,6 @@ class MqttTransport:
         return self._await_outcomes({(one.stream, one.t, one.seq) for one in samples})
 
     def close(self) -> None:
-        """See ``Transport``."""
         self._client.disconnect()
         self._client.loop_stop()
 

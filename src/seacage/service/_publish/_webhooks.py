@@ -6,12 +6,11 @@ import hmac
 from collections import deque
 from collections.abc import Mapping, Sequence
 from datetime import datetime, timedelta
-from typing import Protocol, runtime_checkable
 
 import structlog
 
-from seacage.service._live._alarm_desk import AlarmDesk, Announcement, announcement_json
-from seacage.service._live._clock import AbstractClock
+from seacage.service._live._alarm_desk import Announcement, announcement_json
+from seacage.service._live._cage import LiveCage
 from seacage.service._publish._post import POST_FAILED, Webhook, post
 from seacage.twin import Action
 
@@ -23,21 +22,6 @@ _TIMEOUT_S = 10.0
 _log = structlog.get_logger(__name__)
 
 
-@runtime_checkable
-class Alarmed(Protocol):
-    """Whose alarms are posted: a live cage."""
-
-    @property
-    def desk(self) -> AlarmDesk:
-        """Where its alarms are assessed."""
-        ...
-
-    @property
-    def clock(self) -> AbstractClock:
-        """What time it is there."""
-        ...
-
-
 class WebhookNotifier:
     """Tells webhooks what happens to the alarms of all cages.
 
@@ -47,7 +31,7 @@ class WebhookNotifier:
     ``hooks`` and ``cages``: where to, and whose alarms.
     """
 
-    def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, Alarmed]) -> None:
+    def __init__(self, hooks: Sequence[Webhook], cages: Mapping[str, LiveCage]) -> None:
         self._cages = cages
         self._queues = {hook: deque[str](maxlen=_WAITING) for hook in hooks}
         # Since when each alarm stood that was escalated last: as many as there are alarms.

@@ -9,11 +9,13 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
 from seacage.conventions import InputError
 from seacage.service._live._alarm_desk import Announcement
+from seacage.service._live._cage import LiveCage
 from seacage.service._publish import _webhooks
 from seacage.service._publish._post import Webhook
 from seacage.service._publish._webhooks import WebhookNotifier
@@ -86,7 +88,7 @@ def received_by(
     """What a hook hears, once it has heard so much or a second has passed."""
     desk = Desk()
     desk.open = list(standing)
-    cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now))
+    cage = Mock(LiveCage, desk=desk, clock=SimpleNamespace(now=lambda: now))
 
     async def work():
         herald = WebhookNotifier([hook], {"ace": cage})
@@ -161,7 +163,7 @@ def test_the_next_on_duty_is_notified_once_when_nobody_acknowledges():
 def test_an_alarm_that_comes_again_and_again_is_announced_each_time_and_remembered_once():
     hook, desk = Webhook(url="http://x", after_s=600.0), Desk()
     now = [NOON]
-    cage = SimpleNamespace(desk=desk, clock=SimpleNamespace(now=lambda: now[0]))
+    cage = Mock(LiveCage, desk=desk, clock=SimpleNamespace(now=lambda: now[0]))
     herald = WebhookNotifier([hook], {"ace": cage})
     for times in range(1, 51):
         raised = announcement()
