@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Flag
 from seacage.records import Sample
 from seacage.service._export import replay_in_blocks
 from seacage.service._live._answers import history_of, usable_value
@@ -48,8 +47,7 @@ def history_between(
     buoy, among = past.buoy_record(few), past.buoy_record(sent)
     measured = {sensor: span.measurements(sensor) for sensor in twin.sensor_names}
     answers = [one.answer.without_nodes() for one in replay_in_blocks(twin, buoy, among=among)]
-    history = history_of(buoy, Answer.join(*answers), measured, thinned=thinned)
-    return history.model_copy(update={"twin": past.id})
+    return history_of(buoy, Answer.join(*answers), measured, twin=past.id, thinned=thinned)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -135,10 +133,4 @@ def telling(value: Float[np.ndarray, " reading"], limit: int) -> list[int]:
 
 def _speeds(samples: Sequence[Sample]) -> Float[np.ndarray, " reading"]:
     """Of the current [m/s]; NaN where it failed its checks, for no error is a storm."""
-    useless = (Flag.FAIL, Flag.MISSING)
-    return np.array(
-        [
-            np.nan if one.flags.get(_SPEED, Flag.MISSING) in useless else one.values[_SPEED]
-            for one in samples
-        ]
-    )
+    return np.array([usable_value(one, _SPEED) for one in samples], dtype=float)

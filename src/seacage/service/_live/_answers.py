@@ -236,10 +236,14 @@ def _sensors(
     return found
 
 
-def usable_value(sample: Sample) -> float | None:
-    """Read the one value of a sensor's sample; None where it failed its checks."""
-    key, value = next(iter(sample.values.items()))
-    return value if sample.flags[key] not in _UNUSABLE and math.isfinite(value) else None
+def usable_value(sample: Sample, key: str | None = None) -> float | None:
+    """Read a value of a sample; None where it failed its checks, or is not there.
+
+    ``key``: of the quantity; None for the one quantity of a sensor.
+    """
+    key = key or next(iter(sample.values))
+    value, flag = sample.values.get(key, math.nan), sample.flags.get(key, Flag.MISSING)
+    return value if flag not in _UNUSABLE and math.isfinite(value) else None
 
 
 def shape_of(answered: Answered) -> states.Shape:
@@ -311,12 +315,14 @@ def history_of(
     answer: Answer,  # one row each
     measured: Mapping[str, states.Measured],  # what each sensor read in the same time
     *,
+    twin: str,  # hash of the one that answered
     thinned: bool,  # whether the buoy read more often than these readings say
 ) -> states.History:
     """Say what the twin answers to each reading of a buoy."""
     times = [t.replace(tzinfo=UTC) for t in buoy.time.tolist()]
     lower, upper = answer.volume_interval()
     return states.History(
+        twin=twin,
         t=times,
         valid=answer.valid.tolist(),
         in_domain=answer.in_domain.tolist(),
