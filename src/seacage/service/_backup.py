@@ -165,7 +165,6 @@ class Hashed:
         self._file, self.sum = file, hashlib.sha256()
 
     def read(self, size: int = -1, /) -> bytes:
-        """Read up to so many bytes."""
         piece = self._file.read(size)
         self.sum.update(piece)
         return piece

@@ -19,7 +19,6 @@ class _Repeats(logging.Filter):
         self._rates, self._left_out = Rates(per_s=0.2, burst=100.0), Counter[str]()
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Drop a line, or add to it how many of its kind were dropped."""
         line = cast(object, record.msg)  # structlog's is a mapping
         event = cast(dict[str, object], line) if isinstance(line, dict) else {"event": line}
         kind = f"{record.name} {event.get('event')}"[:100]

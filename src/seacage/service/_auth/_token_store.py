@@ -201,7 +201,6 @@ def check_scopes(scopes: Iterable[str]) -> tuple[str, ...]:
 
 
 def digest(token: str) -> str:
-    """Hash a token or a cookie."""
     # Half a character, as JSON can carry it, is in no token and must not be an error either.
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()
 

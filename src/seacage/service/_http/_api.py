@@ -109,7 +109,6 @@ class PageFiles(StaticFiles):
     """Files of the page: those whose names hold a hash of their content never change."""
 
     async def get_response(self, path: str, scope: Scope) -> Response:
-        """Answer with a file."""
         answer = await super().get_response(path, scope)
         if "etag" in answer.headers:  # weak, as a compressed file is not the same bytes
             answer.headers["etag"] = f"W/{answer.headers['etag'].removeprefix('W/')}"

@@ -20,7 +20,6 @@ class CageGauges(Collector):
         self._cages = cages
 
     def collect(self) -> Iterable[Metric]:
-        """Read every state once."""
         known = {name: state for name, one in self._cages.items() if (state := one.current)}
         for one in QUANTITIES:
             labels = ["cage", one.part] if one.entries else ["cage"]
