@@ -69,8 +69,10 @@ class Tail:
         file = self._file or self._open()
         if file is None:
             return ()
-        if self._rewritten(file):
-            self._begin(file)
+        shorter = os.fstat(file.fileno()).st_size < self.place.offset
+        if shorter or self.place.head != self._hash(file, self.place.offset):
+            _log.info("file begins anew", path=str(self.path))
+            self.place, self._header = TailPosition(), ""
         samples = self._rows(file)
         if not samples and self._is_replaced(file):
             self._leave(file)
@@ -78,7 +80,6 @@ class Tail:
         return samples
 
     def close(self) -> None:
-        """Close the file."""
         if self._file is not None:
             self._file.close()
             self._file = None
@@ -94,15 +95,6 @@ class Tail:
             lines = [self._file.readline() for _ in range(self._skip_lines + 1)]
             self._header = self._text(lines[-1])
         return self._file
-
-    def _rewritten(self, file: BinaryIO) -> bool:
-        shorter = os.fstat(file.fileno()).st_size < self.place.offset
-        return shorter or self.place.head != self._hash(file, self.place.offset)
-
-    def _begin(self, file: BinaryIO) -> None:
-        _log.info("file begins anew", path=str(self.path))
-        self.place, self._header = TailPosition(), ""
-        file.seek(0)
 
     def _is_replaced(self, file: BinaryIO) -> bool:
         mine = os.fstat(file.fileno())

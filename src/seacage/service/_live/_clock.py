@@ -2,8 +2,8 @@
 
 import time
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
+from typing import NamedTuple
 
 from seacage.conventions import duration_text
 
@@ -43,11 +43,9 @@ class WallClock(AbstractClock):
     """The time of this machine."""
 
     def now(self) -> datetime:
-        """Return the time of this machine, UTC."""
         return datetime.now(UTC)
 
     def monotonic_s(self) -> float:
-        """Return the machine's monotonic time [s]."""
         return time.monotonic()
 
 
@@ -67,7 +65,6 @@ class FollowingClock(AbstractClock):
         self._at, self._received = newest, time.monotonic()
 
     def now(self) -> datetime:
-        """Return the time at the cage, UTC."""
         wall = datetime.now(UTC)
         if self._at is None:
             return wall
@@ -96,7 +93,6 @@ class ReplayClock(AbstractClock):
         self.restart(start)
 
     def now(self) -> datetime:
-        """Return the replay's time, UTC."""
         return self._start + timedelta(seconds=(time.monotonic() - self._began) * self.speed)
 
     def wait_s(self, t: datetime) -> float:
@@ -113,18 +109,11 @@ def floor_time(t: datetime, step: timedelta) -> datetime:
     return t - (t - _EPOCH) % step
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class Step(NamedTuple):
     """A clock that was set."""
 
-    # What it would have told, and what it told
-    expected: datetime
-    now: datetime
-
-    @property
-    def by_s(self) -> float:
-        """How far it went ahead, or below zero back [s]."""
-        return (self.now - self.expected).total_seconds()
+    now: datetime  # what it tells since
+    by_s: float  # how far it went ahead, or below zero back [s]
 
 
 class ClockFaults:
@@ -144,7 +133,8 @@ class ClockFaults:
         """Look at the clock once more; how it stepped since the last look, if it did."""
         (before, since), now, elapsed = self._last, self._clock.now(), self._clock.monotonic_s()
         self._last = now, elapsed
-        step = Step(expected=before + timedelta(seconds=elapsed - since), now=now)
+        expected = before + timedelta(seconds=elapsed - since)
+        step = Step(now, (now - expected).total_seconds())
         if abs(step.by_s) < STEP_S:
             return None
         self._step = step, elapsed
