@@ -55,36 +55,24 @@ class GCN:
 
     Training needs JAX and optax (the extra ``gcn``); predicting needs neither.
 
-    Parameters
-    ----------
-    cage
-        Whose net it is; or
-    edges, rest_position
-        pairs of node numbers, from 0, and the shape in still water [m].
-    kind
-        Which network.
-    node_weight
-        Of each node's squared error in the loss; None means 1 everywhere, and for the paper's
-        network 2 on the deeper half of the nodes (layers 6 to 10 of the paper's net and its
-        tip) and 4 on the deepest.
-    width, epochs, patience, learning_rate
-        Channels per node, most passes through the cases, epochs without a better answer to
-        the held-out cases that end the training, and the largest step of Adam; None means
-        what suits the kind.
-
     Source: Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Graph convolutional networks
     for net cage deformation"; Kipf & Welling (2017).
     """
 
+    # Whose net it is; or pairs of node numbers, from 0, and the shape in still water [m]
     cage: Cage | None = None
     edges: Int[np.ndarray, "edge 2"] | None = None
     rest_position: Float[np.ndarray, "node 3"] | None = None
-    kind: Kind = "modal"
+    kind: Kind = "modal"  # which network
+    # Of each node's squared error in the loss; None means 1 everywhere, and for the paper's network
+    # 2 on the deeper half of the nodes (layers 6 to 10 of the paper's net and its tip) and 4 on the
+    # deepest
     node_weight: Float[np.ndarray, " node"] | None = None
-    width: int | None = None
-    epochs: int | None = None
-    patience: int | None = None
-    learning_rate: float | None = None
+    # Of the training; None means what suits the kind
+    width: int | None = None  # channels per node
+    epochs: int | None = None  # most passes through the cases
+    patience: int | None = None  # epochs without a better answer to the held-out cases that end it
+    learning_rate: float | None = None  # largest step of Adam
 
     def __post_init__(self) -> None:
         self._recipe()

@@ -78,30 +78,23 @@ class GaussianProcess:
 
     All outputs share one kernel and one factorisation; each keeps its own mean and amplitude.
 
-    Parameters
-    ----------
-    kernel
-        ``"squared-exponential"`` for very smooth answers, ``"matern-5/2"`` for those with kinks,
-        ``"matern-3/2"`` for rough ones.
-    noise
-        ``"white"``: Gaussian, the same share of every output's variance. ``"per-output"``: its
-        own share for each. ``"by-input"``: changing smoothly with the inputs, the same share
-        for all. ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one
-        output of a case counts less in all.
-    ensemble
-        ``"auto"``: where observations are few, the answer is that of 16 draws of the
-        hyperparameters from their posterior, as one choice would make intervals too narrow.
-        ``"always"`` and ``"never"`` decide it.
-    restarts
-        Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
-        cases; fewer get four times as many.
-
     Source: Rasmussen & Williams (2006), chapters 2 and 5.
     """
 
+    # ``"squared-exponential"`` for very smooth answers, ``"matern-5/2"`` for those with kinks,
+    # ``"matern-3/2"`` for rough ones
     kernel: KernelName = "squared-exponential"
+    # ``"white"``: Gaussian, the same share of every output's variance. ``"per-output"``: its own
+    # share for each. ``"by-input"``: changing smoothly with the inputs, the same share for all.
+    # ``"student-t"``: with outliers, four degrees of freedom; what is wrong in one output of a case
+    # counts less in all
     noise: NoiseName = "white"
+    # ``"auto"``: where observations are few, the answer is that of 16 draws of the hyperparameters
+    # from their posterior, as one choice would make intervals too narrow. ``"always"`` and
+    # ``"never"`` decide it
     ensemble: Ensemble = "auto"
+    # Starts of the hyperparameter search beside the one at the prior's mean, for more than 40
+    # cases; fewer get four times as many
     restarts: int = 3
 
     def __post_init__(self) -> None:

@@ -161,25 +161,17 @@ class PcaGP:
     each case train the processes, and the shape is the sum over modes (the paper also sums over
     the cases); ``centred=False`` reads M M' literally.
 
-    Parameters
-    ----------
-    modes
-        How many to keep; or
-    variance
-        keep the fewest that explain this share. Neither means the paper's 0.93.
-    centred
-        Whether the mean shape is taken out first. Otherwise M holds coordinates, or, where
-        ``fit`` is given the shape at rest, displacements from it: the paper says both.
-    kernel, restarts
-        As for ``GaussianProcess``.
-
     Source: Katsidoniotaki et al. (2025), Sci. Rep. 15:44281, Methods, "Net cage displacement data
     dimension reduction using PCA".
     """
 
+    # How many to keep, or the share that the fewest have to explain; neither means the paper's 0.93
     modes: int | None = None
     variance: float | None = None
+    # Whether the mean shape is taken out first. Otherwise M holds coordinates, or, where ``fit`` is
+    # given the shape at rest, displacements from it: the paper says both
     centred: bool = True
+    # As for ``GaussianProcess``
     kernel: _gp.KernelName = "squared-exponential"
     restarts: int = 3
 

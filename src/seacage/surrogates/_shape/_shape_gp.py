@@ -37,28 +37,18 @@ class ShapeGP:
 
     All coordinates share one kernel and one factorisation, so principal components are no
     model here but compression: as many are kept as the tolerance asks for.
-
-    Parameters
-    ----------
-    kernel
-        Matern-5/2 by default: lines going slack and ropes stiffening put kinks in the shape.
-    tolerance
-        Largest root mean square distance that compression may move any node by, over the
-        training cases [m].
-    restarts
-        Random starts of the hyperparameter search beside the deterministic one.
-    symmetry
-        Of the cage: every case is learned by its image in one sector of the current's
-        directions, and answered from there. Needs ``metocean_features``.
-    asymmetry
-        Largest that ``check_symmetry`` may find in the training [m].
     """
 
+    # Matern-5/2 by default: lines going slack and ropes stiffening put kinks in the shape
     kernel: _gp.KernelName = "matern-5/2"
+    # Largest root mean square distance that compression may move any node by, over the training
+    # cases [m]
     tolerance: float = 1e-3
-    restarts: int = 3
+    restarts: int = 3  # random starts of the hyperparameter search beside the deterministic one
+    # Of the cage: every case is learned by its image in one sector of the current's directions, and
+    # answered from there. Needs ``metocean_features``
     symmetry: Symmetry | None = None
-    asymmetry: float = 0.05
+    asymmetry: float = 0.05  # largest that ``check_symmetry`` may find in the training [m]
 
     def __post_init__(self) -> None:
         _gp.check_options(kernel=self.kernel, restarts=self.restarts)
