@@ -17,22 +17,23 @@ from seacage.records import SEA_COLUMNS, read_sea_states, sea_columns
 
 Range = tuple[float, float]
 
-_RANGES: Mapping[str, Mapping[str, Range]] = {
-    "paper": {},
-    "default": {"period_ratio": (0.8, 2.2)},
-    "current": {"hs": (0.0, 0.0)},
-    "profile": {"hs": (0.0, 0.0)},
-    "loads": {"hs": (0.05, 3.0), "period_ratio": (0.63, 3.0)},
-}
 # Mean and standard deviation of the shear along the current and to its right [m/s]: 1,980 profiles
 # of a bottom-mounted ADCP in 29.5 m of water at Long Beach (Nova Scotia, 2019), as
 # ``ocean.current_modes`` has them. Their part to the right is 0 in the mean within 0.006.
 LONG_BEACH_SHEAR: tuple[Range, Range] = ((-0.11, 0.22), (0.0, 0.14))
 _MOST_DEVIATIONS = 2.5  # from the mean, of drawn shears
-# What a plan has beside its ranges
-_LIMITS: Mapping[str, Mapping[str, Any]] = {
-    "loads": {"longest_tp": 18.0, "corner_every": 16},
-    "profile": {"shear": LONG_BEACH_SHEAR},
+# Of the plans that have a name, as ``Plan.sample`` takes them
+_PLANS: Mapping[str, Mapping[str, Any]] = {
+    "paper": {},
+    "default": {"period_ratio": (0.8, 2.2)},
+    "current": {"hs": (0.0, 0.0)},
+    "profile": {"hs": (0.0, 0.0), "shear": LONG_BEACH_SHEAR},
+    "loads": {
+        "hs": (0.05, 3.0),
+        "period_ratio": (0.63, 3.0),
+        "longest_tp": 18.0,
+        "corner_every": 16,
+    },
 }
 
 
@@ -142,12 +143,11 @@ class Plan:
         ``ranges``: to take in place of the plan's own, by the names of ``Plan.sample``; the plan is
         then called by them, too.
         """
-        if name not in _RANGES:
-            raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_RANGES)}.")
-        own = {**_RANGES[name], **(ranges or {})}
+        if name not in _PLANS:
+            raise InputError(f"Plan.named: no plan {name!r}; there are: {', '.join(_PLANS)}.")
         called = f"{name}, other {' and '.join(ranges)}" if ranges else name
-        limits = _LIMITS.get(name, {})
-        return cls.sample(seed, cases, duration=duration, name=called, **own, **limits)
+        own = {**_PLANS[name], **(ranges or {}), "name": called}
+        return cls.sample(seed, cases, duration=duration, **own)
 
     @classmethod
     def grid(
