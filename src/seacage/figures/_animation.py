@@ -318,12 +318,12 @@ def _colours() -> list[str]:
     """Every colour of the picture, and what its soft edges blend to."""
     from matplotlib.colors import to_hex
 
-    net = [to_hex(_ramp(_NET, _NET_LEVELS)(level)) for level in range(_NET_LEVELS)]
-    tension = [to_hex(_ramp(_TENSION, _TENSION_LEVELS)(n)) for n in range(_TENSION_LEVELS)]
+    ramps = ((_NET, _NET_LEVELS), (_TENSION, _TENSION_LEVELS))
+    levels = [to_hex(_ramp(of, count)(level)) for of, count in ramps for level in range(count)]
     plain = ["#ffffff", _WATER, _SURFACE, _CREST, _TWINE, INK, MUTED, FAINT, MULTI, "#d5dbe0"]
     soft = [_blend(INK, _WATER), _blend(INK, "#ffffff"), _blend(MUTED, "#ffffff")]
     soft += [_blend(MULTI, "#ffffff"), _blend(MUTED, _WATER), _blend(_CREST, _SURFACE)]
-    return list(dict.fromkeys([*plain, *net, *tension, *soft]))
+    return list(dict.fromkeys([*plain, *levels, *soft]))
 
 
 def _blend(one: str, other: str) -> str:

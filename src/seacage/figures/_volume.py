@@ -7,7 +7,7 @@ import numpy as np
 from jaxtyping import Float
 
 from seacage.conventions import Origin
-from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, caption, head, page
+from seacage.figures._style import FIT, INK, LOW, MULTI, MUTED, caption, head, note, page
 from seacage.figures._types import Axes, Figure
 
 _LOOKS = ((MULTI, "-"), (LOW, "--"), ("#4f8a4c", "-."), ("#7d5ba6", ":"))
@@ -60,8 +60,8 @@ def volume_figure(
         axes.set(xlabel="Current speed [m/s]", ylabel="Volume [% of still water]")
         if measured:
             sources = "; ".join(dict.fromkeys(mark.source for mark in measured))
-            note = f"◆ measured on other cages with other gear:\n{sources}"
-            caption(axes, note, (0.02, 0.03), va="bottom", color=MUTED, fontsize=7.5)
+            text = f"◆ measured on other cages with other gear:\n{sources}"
+            caption(axes, text, (0.02, 0.03), va="bottom", color=MUTED, fontsize=7.5)
         head(axes, "Volume of the net", origin=origin, legend=len(fraction))
     return figure
 
@@ -74,5 +74,4 @@ def _draw_mark(axes: Axes, mark: VolumeMark) -> None:
         name, offset = f"{mark.name}, > {mark.current_speed:g} m/s", (8, -12)
         arrow = {"arrowstyle": "-|>", "color": FIT, "lw": 1.2}
         axes.annotate("", (place[0] + 0.09, place[1]), place, arrowprops=arrow)
-    look = {"textcoords": "offset points", "va": "center", "fontsize": 7.5, "color": INK}
-    axes.annotate(name, place, offset, ha="right", **look)
+    note(axes, name, place, offset, ha="right", va="center", color=INK)
