@@ -28,7 +28,7 @@ from seacage.service._live._metrics import Metrics
 from seacage.service._live._past import Past
 from seacage.service._live._twin_shelf import Term, TwinShelf, check_fit, hash_of
 from seacage.service._schemas._samples import BUOY_KEYS
-from seacage.service._schemas._state import AlarmBrief, State
+from seacage.service._schemas._state import State
 from seacage.service._store._samples import Stored
 from seacage.service._store._store import Store, StoreError
 from seacage.twin import (
@@ -63,7 +63,7 @@ class Snapshot:
     state: State
     rest_position: Float[np.ndarray, "node 3"]
     twin: Twin  # that answered
-    about: Flags = Flags.LIVE
+    about: Flags
     made: float = field(default_factory=time.monotonic)
 
     @cached_property
@@ -135,7 +135,7 @@ class LiveCage:
         if request and self.past.since:  # asked for, or put into its folder, since the last start
             self.desk.follow(self.past, limits, request, now=clock.now())
         self.live = LiveTwin(self.past, clock=clock, desk=self.desk, tick_s=tick_s)
-        self.snapshot = self._snapshot_of(self.live.answered)
+        self.snapshot = self._snapshot(self.past, self.live.state, self.live.answered)
 
     @property
     def twin(self) -> Twin:
@@ -153,35 +153,12 @@ class LiveCage:
         """The time after which a sample's own clock must be wrong."""
         return self.clock.latest_allowed(self.twin.timeouts.future_s)
 
-    def state_of(
-        self,
-        answered: Answered,
-        memory: TwinState,
-        *,
-        alarms: Sequence[AlarmBrief] = (),
-        past: Past | None = None,  # with the twin that answered; None for the one in force
-    ) -> State:
-        """Say what the cage does at one time, and what of it is not well."""
-        past, damage = past or self.past, self.live.damage.at(answered.t)
-        state = state_of(self.name, past.twin, answered, memory, damage=damage)
-        policy, least, unlike = self.desk.policy, self._least_volume, past.twin.unlike
-        concerns = concerns_of(state, memory, policy=policy, least_volume=least, unlike=unlike)
-        also = {"twin": past.id, "alarms": list(alarms), "concerns": list(concerns)}
-        return state.model_copy(update=also)
-
     def snapshot_at(self, at: datetime | None) -> Snapshot:
         """Return what the cage said at a time, or says now."""
         if at is None:
             return self.snapshot
         past = self.past.of(at)
-        memory, answered = past.state_at(at)
-        return Snapshot(
-            answered=answered,
-            state=self.state_of(answered, memory, past=past),
-            rest_position=self.rest_position,
-            twin=past.twin,
-            about=Flags.PAST,
-        )
+        return self._snapshot(past, *past.state_at(at), about=Flags.PAST)
 
     def refuse_ahead(self, stream: str, t: datetime) -> None:
         """Note that a sample was refused as later than ``latest_allowed``."""
@@ -395,16 +372,29 @@ class LiveCage:
                     assert_never(event)
 
     def _publish(self, answered: Answered) -> None:
-        self.snapshot = self._snapshot_of(answered)
+        self.snapshot = self._snapshot(self.past, self.live.state, answered)
         severities = (alarm.severity for alarm in self.snapshot.state.alarms)
         self._metrics.count_alarms(self.name, severities)
         for mailbox in self._mailboxes:
             mailbox.leave(self.snapshot)
 
-    def _snapshot_of(self, answered: Answered) -> Snapshot:
-        state = self.state_of(answered, self.live.state, alarms=self.desk.waiting())
-        rest = self.rest_position
-        return Snapshot(answered=answered, state=state, rest_position=rest, twin=self.twin)
+    def _snapshot(
+        self, past: Past, memory: TwinState, answered: Answered, *, about: Flags = Flags.LIVE
+    ) -> Snapshot:
+        """Say what the cage does at one time, and what of it is not well."""
+        twin, damage = past.twin, self.live.damage.at(answered.t)
+        state = state_of(self.name, twin, answered, memory, damage=damage)
+        policy, least = self.desk.policy, self._least_volume
+        concerns = concerns_of(state, memory, policy=policy, least_volume=least, unlike=twin.unlike)
+        alarms = self.desk.waiting() if about is Flags.LIVE else []
+        also = {"twin": past.id, "alarms": alarms, "concerns": list(concerns)}
+        return Snapshot(
+            answered=answered,
+            state=state.model_copy(update=also),
+            rest_position=self.rest_position,
+            twin=twin,
+            about=about,
+        )
 
 
 def _usual_policy(twin: Twin) -> AlarmPolicy:

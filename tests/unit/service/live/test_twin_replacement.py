@@ -292,7 +292,8 @@ def test_a_start_finds_everything_as_the_replacement_left_it(cage, tmp_path):
     again = Past(twin, cage.store, name, hash_of(twin), cage.past.since, cage._shelf)
     memory, answered = again.state_at(cage.clock.now())
     assert memory.tracked == cage.live.state.tracked
-    assert cage.state_of(answered, memory) == cage.state_of(cage.live.answered, cage.live.state)
+    state = cage._snapshot(cage.past, memory, answered).state
+    assert state == cage._snapshot(cage.past, cage.live.state, cage.live.answered).state
 
 
 def test_a_swap_that_fails_leaves_the_old_twin_at_work(cage, tmp_path, monkeypatch):
