@@ -51,7 +51,7 @@ def complete(method: Method, seed: int, runs: Runs) -> None:
         for problem in pair_problems(method)
         if (method.name, problem.name, seed) not in there
     ]
-    scores = runs.ensure_all(missing, method, on_done=lambda _: None) if missing else []
+    scores = runs.ensure(missing, method, on_done=lambda _: None) if missing else []
     with table.open("a", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         for one in scores:

@@ -56,24 +56,12 @@ class Runs:
 
     def ensure(
         self,
-        # The question, the method, and the samples
-        problem: Problem,
-        method: Method,
-        seeds: Sequence[int],
-        *,
-        on_done: Callable[[int], None],  # called with the number of seeds that are done
-    ) -> list[RunScore]:
-        """Score the method's answers for some seeds; those that are there are not made again."""
-        return self.ensure_all([(problem, seed) for seed in seeds], method, on_done=on_done)
-
-    def ensure_all(
-        self,
-        cases: Sequence[tuple[Problem, int]],
+        cases: Sequence[tuple[Problem, int]],  # problems with the seeds of their samples
         method: Method,
         *,
         on_done: Callable[[int], None],  # called with the number of cases that are done
     ) -> list[RunScore]:
-        """Score the method's answers to problems with their seeds, all made in one process."""
+        """Score the method's answers, made in one process; those there are not made again."""
         out = self._answers(method)
         out.mkdir(parents=True, exist_ok=True)
         jobs = {case: self._job(*case) for case in cases}

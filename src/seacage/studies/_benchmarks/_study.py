@@ -107,9 +107,8 @@ def _scores(
     for method in methods:
         before = len(found)
         found += runs.ensure(
-            problem,
+            [(problem, seed) for seed in seeds],
             method,
-            seeds,
             on_done=lambda done, before=before: notify(problem.title, before + done, total),
         )
     return found

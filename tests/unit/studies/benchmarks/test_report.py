@@ -129,6 +129,6 @@ def test_what_is_not_there_is_left_out_of_the_page_but_never_ours(tmp_path, monk
     with pytest.raises(InputError, match="our own answers to Currin are not there"):
         benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
     runs = Runs(folder=tmp_path / "runs")
-    runs.ensure(problem_named("currin"), own[0], [5], on_done=lambda _: None)
+    runs.ensure([(problem_named("currin"), 5)], own[0], on_done=lambda _: None)
     study = benchmark_study(tmp_path, seeds=[5], quick=True, kept=True)
     assert [one.method for one in study.summaries] == [OURS]

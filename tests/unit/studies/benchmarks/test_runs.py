@@ -66,7 +66,7 @@ def method(folder: Path, name: str) -> Method:
 def test_a_method_answers_every_seed_once(tmp_path, problem):
     runs, reported = Runs(folder=tmp_path / "runs"), []
     mean = method(tmp_path, "mean")
-    first = runs.ensure(problem, mean, [0, 3], on_done=reported.append)
+    first = runs.ensure([(problem, 0), (problem, 3)], mean, on_done=reported.append)
     # A report counts what is there when it is read: on a busy machine the next seed too.
     assert reported in ([0, 1, 2], [0, 2, 2])
     assert [run.seed for run in first] == [0, 3]
@@ -76,13 +76,14 @@ def test_a_method_answers_every_seed_once(tmp_path, problem):
     assert first[1].fit_s > 0.0
 
     made = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")}
-    again = runs.ensure(problem, mean, [3, 0], on_done=reported.append)
+    again = runs.ensure([(problem, 3), (problem, 0)], mean, on_done=reported.append)
     assert [run.seed for run in again] == [3, 0]
     assert {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*.json")} == made
 
 
 def test_a_method_never_sees_the_answers_to_the_tests(tmp_path, problem):
-    Runs(folder=tmp_path).ensure(problem, method(tmp_path, "mean"), [0], on_done=lambda _: None)
+    mean = method(tmp_path, "mean")
+    Runs(folder=tmp_path).ensure([(problem, 0)], mean, on_done=lambda _: None)
     (job,) = (tmp_path / "jobs").glob("*.npz")
     with np.load(job) as given:
         held = [given[name].ravel() for name in given.files]
@@ -92,7 +93,7 @@ def test_a_method_never_sees_the_answers_to_the_tests(tmp_path, problem):
 
 def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
     runs = Runs(folder=tmp_path)
-    (run,) = runs.ensure(problem, method(tmp_path, "refuse"), [5], on_done=lambda _: None)
+    (run,) = runs.ensure([(problem, 5)], method(tmp_path, "refuse"), on_done=lambda _: None)
     assert run.error == "ValueError: seed 5 is not liked"
     assert np.isnan(run.rmse)
     whole = summary([run, run])
@@ -101,38 +102,36 @@ def test_a_failure_is_kept_with_its_words_and_has_no_score(tmp_path, problem):
 
 def test_several_problems_are_answered_together_with_times_where_noise_lasts(tmp_path, problem):
     cases = [(problem, 5), (problem.disturbed(), 5), (problem.disturbed(), 6)]
-    scores = Runs(folder=tmp_path).ensure_all(
-        cases, method(tmp_path, "timed"), on_done=lambda _: None
-    )
+    scores = Runs(folder=tmp_path).ensure(cases, method(tmp_path, "timed"), on_done=lambda _: None)
     assert [one.error for one in scores] == [None] * 3
     assert [(one.problem, one.seed) for one in scores] == [(one.name, seed) for one, seed in cases]
 
 
 def test_a_process_that_dies_is_reported(tmp_path, problem):
     (run,) = Runs(folder=tmp_path).ensure(
-        problem, method(tmp_path, "vanish"), [0], on_done=lambda _: None
+        [(problem, 0)], method(tmp_path, "vanish"), on_done=lambda _: None
     )
     assert run.error == "the process ended with code 1: gone"
 
 
 def test_what_was_begun_and_not_signed_is_made_again(tmp_path, problem):
     runs, mean = Runs(folder=tmp_path / "runs"), method(tmp_path, "mean")
-    runs.ensure(problem, mean, [0], on_done=lambda _: None)
+    runs.ensure([(problem, 0)], mean, on_done=lambda _: None)
     (sign,) = (tmp_path / "runs").glob("mean-*/*.json")
     kept = json.loads(sign.read_text())
     sign.unlink()
-    (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
+    (run,) = runs.ensure([(problem, 0)], mean, on_done=lambda _: None)
     assert run.error is None
     assert kept["rows"] == problem.tests
 
 
 def test_an_answer_that_is_no_number_is_an_error(tmp_path, problem):
     runs, mean = Runs(folder=tmp_path / "runs"), method(tmp_path, "mean")
-    runs.ensure(problem, mean, [0], on_done=lambda _: None)
+    runs.ensure([(problem, 0)], mean, on_done=lambda _: None)
     (answer,) = (tmp_path / "runs").glob("mean-*/*.npz")
     with answer.open("wb") as file:
         np.savez(file, mean=np.full(problem.tests, np.nan), std=np.ones(problem.tests))
-    (run,) = runs.ensure(problem, mean, [0], on_done=lambda _: None)
+    (run,) = runs.ensure([(problem, 0)], mean, on_done=lambda _: None)
     assert "not a finite number" in run.error
 
 
