@@ -1,11 +1,13 @@
-"""The command line: one file per group, each importing what it needs when it is called."""
+"""The command line: a table of all commands, each importing what it needs when it is called."""
 
 import os
+from collections.abc import Callable
 from typing import Annotated
 
 import typer
 
 from seacage.service._cli import (
+    _cage,
     _campaign,
     _clearance,
     _config,
@@ -20,8 +22,7 @@ from seacage.service._cli import (
     _study,
     _train,
 )
-from seacage.service._cli._cage import _check, _new
-from seacage.service._cli._console import EXIT_CODES
+from seacage.service._cli._console import EXIT_CODES, guard
 from seacage.service._cli._data import _archive, _backup, _token, _twin
 
 app = typer.Typer(
@@ -59,32 +60,62 @@ def _options(
     del version
 
 
-_cage = typer.Typer(help="A cage's file: write one, check it, draw it.")
-_cage.command()(_new.new)
-_cage.command()(_check.check)
-_cage.command()(_check.draw)
+def _add(group: typer.Typer, *commands: Callable[..., None]) -> None:
+    """Add commands by the names of their functions."""
+    for command in commands:
+        # The job array's command passes on what `campaign run` takes.
+        settings = {"ignore_unknown_options": True} if command is _campaign.slurm else None
+        name = command.__name__.strip("_").replace("_", "-")
+        group.command(name, context_settings=settings)(guard(command))
 
-app.add_typer(_cage, name="cage")
-app.command()(_settle.settle)
-app.command()(_simulate.simulate)
-app.add_typer(_campaign.group, name="campaign")
-app.add_typer(_field.group, name="field")
-app.command()(_train.train)
-app.command("if-parted")(_score.if_parted)
-app.command()(_score.score)
-app.add_typer(_study.group, name="study")
-app.command()(_serve.serve)
-app.command()(_replay.replay)
-app.command()(_clearance.clearance)
-app.command("inspect-path")(_clearance.inspect_path)
-app.command()(_publish.publish)
-app.add_typer(_token.group, name="token")
-app.add_typer(_twin.group, name="twin")
-app.add_typer(_archive.group, name="archive")
-app.add_typer(_config.group, name="config")
-app.command()(_backup.backup)
-app.command()(_backup.restore)
-app.command()(_doctor.doctor)
+
+def _add_group(name: str, text: str, *commands: Callable[..., None]) -> None:
+    group = typer.Typer(help=text)
+    _add(group, *commands)
+    app.add_typer(group, name=name)
+
+
+_add(app, _settle.settle, _simulate.simulate, _train.train, _score.if_parted, _score.score)
+_add(app, _serve.serve, _replay.replay, _clearance.clearance, _clearance.inspect_path)
+_add(app, _publish.publish, _backup.backup, _backup.restore, _doctor.doctor)
+_add_group(
+    "cage", "A cage's file: write one, check it, draw it.", _cage.new, _cage.check, _cage.draw
+)
+_add_group(
+    "campaign",
+    "Many simulations: run them here or on a cluster, see how far they are, export them.",
+    _campaign.run,
+    _campaign.status,
+    _campaign.finish,
+    _campaign.export,
+    _campaign.import_,
+    _campaign.slurm,
+)
+_add_group(
+    "field",
+    "Records of buoys and sensors: make, read and check them.",
+    _field.virtual,
+    _field.import_,
+    _field.check,
+)
+_add_group(
+    "study",
+    "Whole experiments, from simulations to one HTML report.",
+    _study.paper,
+    _study.fidelity,
+    _study.benchmarks,
+    _study.bench,
+)
+_add_group("token", "Tokens of the service.", _token.new, _token.list_, _token.revoke)
+_add_group("twin", "The twins that a service answers by.", _twin.replace)
+_add_group(
+    "archive",
+    "Whole days of samples as Parquet files: write, read and check them.",
+    _archive.write,
+    _archive.read,
+    _archive.check,
+)
+_add_group("config", "Settings of the service.", _config.check, _config.show)
 
 
 def main() -> None:

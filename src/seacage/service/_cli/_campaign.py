@@ -10,22 +10,24 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from seacage.service._cli import _options
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, report, wants_json
+from seacage.service._cli._console import (
+    Exit,
+    exit_with,
+    guard,
+    progress_bar,
+    report,
+    wants_json,
+)
 from seacage.service._cli._plans import PlanOptions
 
 if TYPE_CHECKING:
     from seacage.cage import Cage, Structure
     from seacage.campaigns import CampaignStatus, Simulator
 
-group = typer.Typer(
-    help="Many simulations: run them here or on a cluster, see how far they are, export them."
-)
 Store = Annotated[Path, typer.Argument(help="The campaign's folder, a Zarr store.")]
 _FAILURES_SHOWN = 20
 
 
-@group.command()
-@guard
 def run(
     store: Store,
     *,
@@ -101,8 +103,6 @@ def run(
         raise exit_with("campaign run: no case converged. Check the cage's file.", Exit.FAILED)
 
 
-@group.command()
-@guard
 def status(store: Store) -> None:
     """Say how far a campaign is, what failed in it and why, and how quick it is.
 
@@ -116,8 +116,6 @@ def status(store: Store) -> None:
     _report_status(store, campaign_status(store))
 
 
-@group.command()
-@guard
 def finish(store: Store) -> None:
     """Sum up a campaign whose cases have all been run, in shares perhaps.
 
@@ -140,8 +138,6 @@ def finish(store: Store) -> None:
     _report_status(store, reached)
 
 
-@group.command()
-@guard
 def export(store: Store, out: Annotated[Path, typer.Argument(dir_okay=False)]) -> None:
     """Write a campaign as one CF-NetCDF file.
 
@@ -157,8 +153,6 @@ def export(store: Store, out: Annotated[Path, typer.Argument(dir_okay=False)]) -
     report({"written": str(out)}, rows=[("Written", str(out))])
 
 
-@group.command("import")
-@guard
 def import_(
     folder: Annotated[Path, typer.Argument(exists=True, file_okay=False, metavar="DIR")],
     out: Annotated[Path, typer.Argument(metavar="OUT")],
@@ -202,8 +196,6 @@ def import_(
     )
 
 
-@group.command(context_settings={"ignore_unknown_options": True})
-@guard
 def slurm(
     words: Annotated[list[str], typer.Argument(metavar="STORE [OPTIONS]")],
     *,
@@ -248,8 +240,10 @@ def slurm(
 
 def _parse_options(words: list[str]) -> dict[str, Any]:
     """The options that `campaign run` would get of the words meant for it."""
-    command: Any = typer.main.get_command(group)
-    with command.commands["run"].make_context("seacage campaign run", [*words]) as context:
+    alone = typer.Typer(add_completion=False)
+    alone.command()(guard(run))
+    command: Any = typer.main.get_command(alone)
+    with command.make_context("seacage campaign run", [*words]) as context:
         return {name: None if one == () else one for name, one in context.params.items()}
 
 
@@ -289,7 +283,7 @@ def _report_status(store: Path, reached: "CampaignStatus") -> None:
     summed = reached.finished or reached.done < reached.total
     unsummed = ", not summed: say `seacage campaign finish`"
     report(
-        {"store": str(store), "origin": "computed", **about, "done": reached.done}
+        {"store": store, "origin": "computed", **about, "done": reached.done}
         | {"failures": failures, "core_seconds": round(reached.core_seconds, 2)}
         | {"simulated_s_per_core_second": round(reached.pace, 1)},
         rows=[
@@ -305,10 +299,8 @@ def _report_status(store: Path, reached: "CampaignStatus") -> None:
 def _pace(reached: "CampaignStatus") -> list[tuple[str, str]]:
     if math.isnan(reached.core_seconds):
         return []
-    cost = f"{reached.core_seconds:.0f} core-seconds"
-    if math.isnan(reached.pace):
-        return [("Cost", cost)]
-    return [("Cost", f"{cost}, {reached.pace:.0f} simulated seconds in each")]
+    each = "" if math.isnan(reached.pace) else f", {reached.pace:.0f} simulated seconds in each"
+    return [("Cost", f"{reached.core_seconds:.0f} core-seconds{each}")]
 
 
 def _failure_rows(reached: "CampaignStatus") -> list[tuple[str, str]]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, refusal, report
+from seacage.service._cli._console import Exit, exit_with, refusal, report
 from seacage.service._cli._options import InFolder, OutFile, ServedCage
 
 if TYPE_CHECKING:
@@ -74,7 +74,6 @@ class NetOptions:
         return lambda call, query: ANSWERS[call](predicted, query)
 
 
-@guard
 def clearance(
     points: Annotated[Path | None, typer.Argument(exists=True, dir_okay=False)] = None,
     *,
@@ -184,7 +183,6 @@ def _path_row(path: "schemas.PathAnswer", below_m: float) -> str:
     )
 
 
-@guard
 def inspect_path(
     *,
     stand_off: Annotated[float, typer.Option(min=0.1)] = 2.0,

@@ -6,24 +6,22 @@ import socket
 import ssl
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, ParamSpec, cast
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, guard, refusal, report, report_findings
+from seacage.service._cli._console import Exit, Finding, refusal, report, report_findings
 
 if TYPE_CHECKING:
     from seacage.service._publish._opcua_settings import OpcUaSettings
     from seacage.service._settings import Settings
 
-group = typer.Typer(help="Settings of the service.")
+P = ParamSpec("P")
 Config = Annotated[
     Path | None, typer.Option(exists=True, dir_okay=False, help="The file of settings, TOML.")
 ]
 
 
-@group.command()
-@guard
 def check(
     *, config: Config = None, reach: Annotated[bool, typer.Option("--reach")] = False
 ) -> None:
@@ -44,8 +42,6 @@ def check(
     report_findings("config", findings, code=Exit.REFUSED)
 
 
-@group.command()
-@guard
 def show(*, config: Config = None) -> None:
     """Show all settings as a service would take them: file, environment and defaults together.
 
@@ -79,31 +75,28 @@ def _hidden(name: str, value: object) -> object:
 
 
 def _findings(settings: "Settings", *, reach: bool) -> Iterator[Finding]:
-    yield _try("address", lambda: _listens(settings))
+    yield _try("address", _listens, settings)
     if settings.certificate and settings.key:
-        yield _try("certificate", lambda: _check_certificate(settings))
-    yield _try("data", lambda: _writable(settings.data))
-    for section in settings.cages:
-        yield _try(
-            f"cage {section.name or section.twin}",
-            lambda one=section: _check_cage(settings, one.twin, one.name),
-        )
+        yield _try("certificate", _check_certificate, settings)
+    yield _try("data", _writable, settings.data)
+    for one in settings.cages:
+        yield _try(f"cage {one.name or one.twin}", _check_cage, settings, one.twin, one.name)
     if not settings.cages:
         yield Finding(what="cages", state="absent", message="none: the demonstration is served")
-    yield _try("store", lambda: _check_store(settings, reach=reach))
+    yield _try("store", _check_store, settings, reach=reach)
     if settings.mqtt:
-        yield _try("mqtt", lambda: _check_broker(settings, reach=reach))
+        yield _try("mqtt", _check_broker, settings, reach=reach)
     if settings.opcua:
-        yield _try("opcua", lambda: _check_opcua(settings))
+        yield _try("opcua", _check_opcua, settings)
     for hook in settings.webhooks:
-        yield _try("webhook", lambda one=hook: _check_webhooks(settings, one.cages))
+        yield _try("webhook", _check_webhooks, settings, hook.cages)
 
 
-def _try(what: str, attempt: Callable[[], str]) -> Finding:
+def _try(what: str, check: Callable[P, str], *args: P.args, **more: P.kwargs) -> Finding:
     from seacage.conventions import SeacageError
 
     try:
-        return Finding(what=what, state="ok", message=attempt())
+        return Finding(what=what, state="ok", message=check(*args, **more))
     except (SeacageError, OSError) as error:
         return Finding(what=what, state="wrong", message=str(error))
 
@@ -118,7 +111,7 @@ def _check_certificate(section: "Settings | OpcUaSettings") -> str:
     assert certificate
     try:
         ssl.create_default_context(ssl.Purpose.CLIENT_AUTH).load_cert_chain(certificate, key)
-    except (ssl.SSLError, OSError) as error:
+    except OSError as error:  # as SSLError is
         sentence = f"{certificate} and {key} are no PEM certificate and its key ({error})."
         raise refusal(sentence) from error
     return f"{certificate} and its key"

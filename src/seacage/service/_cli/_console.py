@@ -12,7 +12,7 @@ from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from copy import copy
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import MISSING, asdict, dataclass, fields, is_dataclass
 from enum import IntEnum
 from importlib.metadata import requires
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args, get_origin
@@ -162,11 +162,12 @@ def wants_json() -> bool:
     return _wants_json.get()
 
 
-def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, str]] = ()) -> None:
+def report(answer: Mapping[str, object], *, rows: Sequence[tuple[str, object]] = ()) -> None:
     """Print a command's answer.
 
-    ``answer``: what a program gets with ``--json``; NaN becomes null. ``rows``: what a person gets:
-    names and values, in two columns.
+    ``answer``: what a program gets with ``--json``; NaN becomes null, a dataclass an object, and
+    what else JSON does not have its text. ``rows``: what a person gets: names and values, in two
+    columns.
     """
     if wants_json():
         typer.echo(json.dumps(without_nan(answer), default=str))
@@ -190,9 +191,11 @@ def report_case(
 
 
 def without_nan(value: object) -> object:
-    """Turn numbers that JSON does not have into null, at any depth."""
+    """Turn numbers that JSON does not have into null, and dataclasses into mappings, anywhere."""
     if isinstance(value, float):
         return value if abs(value) < float("inf") else None
+    if is_dataclass(value) and not isinstance(value, type):
+        value = asdict(value)
     if isinstance(value, Mapping):
         return {str(key): without_nan(item) for key, item in value.items()}  # pyright: ignore[reportUnknownVariableType, reportUnknownArgumentType]
     if isinstance(value, list | tuple):

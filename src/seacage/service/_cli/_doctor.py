@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, Finding, guard, report_findings
+from seacage.service._cli._console import Exit, Finding, report_findings
 from seacage.service._cli._options import DataFolder
 
 _LOOK_S = 20.0
@@ -28,7 +28,6 @@ _EXTRAS = {
 Found = tuple[Literal["ok", "absent", "wrong"], str]  # state and message of a ``Finding``
 
 
-@guard
 def doctor(
     *,
     data: DataFolder = Path("var"),

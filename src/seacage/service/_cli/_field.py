@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from seacage.service._cli import _options
-from seacage.service._cli._console import guard, progress_bar, refusal, report
+from seacage.service._cli._console import progress_bar, refusal, report
 
 if TYPE_CHECKING:
     from seacage.campaigns import Event, TruthParameters
     from seacage.records import ColumnMap, FieldRecord, Limits, NetcdfMap, ProfilerMap, Record
 
-group = typer.Typer(help="Records of buoys and sensors: make, read and check them.")
 _FLAG_WORDS = {1: "good", 2: "not evaluated", 3: "suspect", 4: "fail", 9: "missing"}
 
 
@@ -24,8 +23,6 @@ LimitsFile = Annotated[
 ]
 
 
-@group.command()
-@guard
 def virtual(
     out: Annotated[Path, typer.Argument(file_okay=False)],
     *,
@@ -162,8 +159,7 @@ def _events(words: list[str] | None, path: Path | None) -> "list[Event]":
 def _report_field(record: "FieldRecord", out: Path) -> None:
     counts = {one.stream: len(one) for one in (record.buoy, *record.sensors.values())}
     report(
-        {"written": str(out), "origin": str(record.origin)}
-        | {"streams": counts, "notes": record.notes},
+        {"written": out, "origin": record.origin, "streams": counts, "notes": record.notes},
         rows=[
             ("Written", f"{out} ({record.origin})"),
             *((stream, f"{count} readings") for stream, count in counts.items()),
@@ -199,19 +195,19 @@ class MapOptions:
         from seacage.records import ColumnMap, NetcdfMap, ProfilerMap, known_map, read_map
 
         options = {"time_zone": self.zone, "depth_m": self.depth_m, "range_m": self.range_m}
+        options |= {"profile": self.profile or None}
         given: dict[str, Any] = {name: one for name, one in options.items() if one is not None}
         if self.origin is not None:
             if self.origin not in {str(Origin.MEASURED), str(Origin.COMPUTED)}:
                 raise refusal(f"--origin {self.origin!r} is unknown. Say measured or computed.")
             given |= {"origin": Origin(self.origin)}
         chosen = read_map(self.columns) if self.columns else None
-        if self.profile:
-            given |= {"profile": True}
-        if chosen is None and (given or self.declination_deg is not None):
+        added = given or self.declination_deg is not None
+        if chosen is None and added:
             chosen = known_map(path) or NetcdfMap(title=path.name)
-        if isinstance(chosen, ProfilerMap):
-            if given or self.declination_deg is not None:
-                raise refusal("The map of a profiler declares all that it needs. Write it there.")
+        if isinstance(chosen, ProfilerMap) and added:
+            raise refusal("The map of a profiler declares all that it needs. Write it there.")
+        if chosen is None or isinstance(chosen, ProfilerMap):
             return chosen
         if isinstance(chosen, ColumnMap):
             if self.origin is not None:
@@ -221,11 +217,9 @@ class MapOptions:
             return chosen.taken_at(self.depth_m, self.range_m)
         if self.declination_deg is not None:
             raise refusal("--declination-deg is for tables; of NetCDF [columns] in a map say it.")
-        return replace(chosen, **given) if chosen else None
+        return replace(chosen, **given)
 
 
-@group.command("import")
-@guard
 def import_(
     path: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     out: Annotated[Path, typer.Argument(dir_okay=False)],
@@ -269,7 +263,7 @@ def _inspect(path: Path, out: Path) -> None:
     found = inspect_file(path)
     if found.map_text:
         out.write_text(found.map_text, encoding="utf-8")
-    written = str(out) if found.map_text else None
+    written = out if found.map_text else None
     report(
         {"findings": found.findings, "written": written, "to_fill_in": found.open_questions},
         rows=[
@@ -285,8 +279,6 @@ def _limits(path: Path | None) -> "Limits":
     return read_limits(path) if path else DEFAULT_LIMITS
 
 
-@group.command()
-@guard
 def check(
     path: Annotated[Path, typer.Argument(exists=True)],
     *,
@@ -319,7 +311,7 @@ def check(
 
 
 def _report_flags(records: "list[Record]", written: Path | None = None) -> None:
-    rows: list[tuple[str, str]] = [("Written", str(written))] if written else []
+    rows: list[tuple[str, object]] = [("Written", written)] if written else []
     streams: dict[str, object] = {}
     for record in records:
         flags = _flags(record)
@@ -328,9 +320,9 @@ def _report_flags(records: "list[Record]", written: Path | None = None) -> None:
             counted = ", ".join(f"{count} {word}" for word, count in counts.items())
             rows.append((f"  {key}", counted))
         rows += [("  note", note) for note in record.notes]
-        about = {"origin": str(record.origin), "rows": len(record)}
+        about = {"origin": record.origin, "rows": len(record)}
         streams[record.stream] = about | {"flags": flags, "notes": record.notes}
-    report({"written": None if written is None else str(written), "streams": streams}, rows=rows)
+    report({"written": written, "streams": streams}, rows=rows)
 
 
 def _span(record: "Record") -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, refusal, report
+from seacage.service._cli._console import Exit, exit_with, progress_bar, refusal, report
 from seacage.service._cli._options import Columns, InFile, ServedCage, read_streams
 
 if TYPE_CHECKING:
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from seacage.service._publish._transport import Transport
 
 
-@guard
 def publish(
     source: Annotated[str, typer.Argument()],
     *,

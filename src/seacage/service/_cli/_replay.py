@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, refusal, report
+from seacage.service._cli._console import progress_bar, refusal, report
 from seacage.service._cli._options import InFolder, ServedCage, read_streams
 
 if TYPE_CHECKING:
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from seacage.twin import Answer, Twin
 
 
-@guard
 def replay(
     record: Annotated[Path, typer.Argument(exists=True)],
     *,

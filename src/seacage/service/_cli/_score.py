@@ -1,14 +1,13 @@
 """``seacage score`` and ``seacage if-parted``: how good a twin is, and what it says of damage."""
 
 from collections.abc import Iterable
-from dataclasses import asdict
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, report
+from seacage.service._cli._console import Exit, exit_with, report
 from seacage.service._cli._options import OutFolder, SeaOptions, Seed
 
 if TYPE_CHECKING:
@@ -16,7 +15,6 @@ if TYPE_CHECKING:
     from seacage.studies import BaselineScore, SensorScore
 
 
-@guard
 def score(
     *,
     twin: Annotated[Path, typer.Option(exists=True, file_okay=False)],
@@ -49,8 +47,7 @@ def score(
     scores = score_record(read, record, out=out, seed=seed)
     rows = error_rows(scores) + [row for one in others for row in _baseline_rows(one)]
     report(
-        {"sensors": [asdict(one) for one in scores], "written": None if out is None else str(out)}
-        | {"baselines": [asdict(one) for one in others]},
+        {"sensors": scores, "written": out, "baselines": others},
         rows=rows if out is None else [*rows, ("Written", str(out))],
     )
 
@@ -83,7 +80,6 @@ def _baseline_rows(score: "BaselineScore") -> list[tuple[str, str]]:
     ]
 
 
-@guard
 def if_parted(
     *, sea: SeaOptions, twin: Annotated[Path, typer.Option(exists=True, file_okay=False)]
 ) -> None:

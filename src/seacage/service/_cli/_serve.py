@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, refusal, report
+from seacage.service._cli._console import progress_bar, refusal, report
 from seacage.service._cli._options import InFile, InFolder
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from seacage.twin import Twin
 
 
-@guard
 def serve(
     *,
     config: InFile = None,

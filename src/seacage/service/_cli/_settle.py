@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from seacage.service._cli import _options
-from seacage.service._cli._console import guard, report_case
+from seacage.service._cli._console import report_case
 
 if TYPE_CHECKING:
     from seacage.cage import Cage, Structure
     from seacage.dynamics import Response
 
 
-@guard
 def settle(
     *,
     sea: _options.SeaOptions,

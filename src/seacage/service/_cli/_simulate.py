@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from seacage.service._cli import _options
-from seacage.service._cli._console import Exit, exit_with, guard, progress_bar, refusal, report_case
+from seacage.service._cli._console import Exit, exit_with, progress_bar, refusal, report_case
 
 if TYPE_CHECKING:
     import numpy as np
@@ -20,7 +20,6 @@ Settings = dict[str, str | int | float]  # of a simulation, with the unit in eac
 _SMOOTH = 0.5  # between samples that an animation can follow waves by [s]
 
 
-@guard
 def simulate(
     *,
     sea: _options.SeaOptions,
@@ -210,19 +209,17 @@ def _lines(history: "History") -> dict[str, dict[str, object]]:
     """All ropes and chains by their names; null where something is not known."""
     from seacage.records import LINES
 
-    lines, columns = history.lines, dict[str, Any]()
-    for name, values in history.lines.columns.items():
-        is_force = LINES[name][0] == "N"
-        columns[f"{name}_kn" if is_force else name] = values / 1e3 if is_force else values
-
-    def one(index: int) -> dict[str, object]:
-        each = {key: float(values[index]) for key, values in columns.items()}
-        digits = {key: 9 if key == "damage_per_year" else 3 for key in each}
-        return {key: round(v, digits[key]) if isfinite(v) else None for key, v in each.items()}
-
-    return {
-        name: {"kind": lines.kinds[index], **one(index)} for index, name in enumerate(lines.names)
+    lines = history.lines
+    answer = {
+        name: dict[str, object](kind=kind)
+        for name, kind in zip(lines.names, lines.kinds, strict=True)
     }
+    for column, values in lines.columns.items():
+        key, scale = (f"{column}_kn", 1e3) if LINES[column][0] == "N" else (column, 1.0)
+        digits = 9 if column == "damage_per_year" else 3
+        for each, value in zip(answer.values(), values / scale, strict=True):
+            each[key] = round(float(value), digits) if isfinite(value) else None
+    return answer
 
 
 def _bands(others: "list[History]") -> dict[str, dict[str, dict[str, float]]]:

@@ -1,24 +1,20 @@
 """``seacage study``: whole experiments."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, refusal, report
+from seacage.service._cli._console import progress_bar, refusal, report
 from seacage.service._cli._options import InFile, InFolder, Seed, Workers, read_cage
 from seacage.service._cli._score import error_rows
 
 if TYPE_CHECKING:
-    from seacage.studies import BenchmarkStudy, BenchStudy, FidelityStudy, PaperStudy, ShapeScore
+    from seacage.studies import BenchStudy, FidelityStudy, PaperStudy, ShapeScore
 
 ReportFolder = Annotated[Path, typer.Option(file_okay=False, help="Folder of the report.")]
-group = typer.Typer(help="Whole experiments, from simulations to one HTML report.")
 
 
-@group.command()
-@guard
 def paper(
     *,
     out: ReportFolder = Path("study"),
@@ -68,27 +64,27 @@ def paper(
             workers=workers,
             progress=progress,
         )
-    report(
-        {
-            **_files(study, "virtual field"),
-            "sensors": [asdict(one) for one in study.sensors],
-            "shapes": [_shape_entry(one) for one in study.shapes],
-            "claims": [asdict(claim) for claim in study.claims],
-            "wave_loads": None if study.loads is None else asdict(study.loads),
-        },
-        rows=[
-            *error_rows(study.sensors),
-            *((one.model, _shape_line(one)) for one in study.shapes),
-            *((claim.verdict, claim.claim) for claim in study.claims),
-            ("Report", f"{study.report} (virtual field)"),
-        ],
+    rows = [
+        *error_rows(study.sensors),
+        *((one.model, _shape_line(one)) for one in study.shapes),
+        *((claim.verdict, claim.claim) for claim in study.claims),
+    ]
+    _report_virtual(
+        study,
+        rows,
+        sensors=study.sensors,
+        shapes=[_shape_entry(one) for one in study.shapes],
+        claims=study.claims,
+        wave_loads=study.loads,
     )
 
 
-def _files(
-    study: "PaperStudy | FidelityStudy | BenchmarkStudy | BenchStudy", origin: str
-) -> dict[str, object]:
-    return {"report": str(study.report), "scores": str(study.scores), "origin": origin}
+def _report_virtual(
+    study: "PaperStudy | FidelityStudy | BenchStudy", rows: list[tuple[str, str]], **answer: object
+) -> None:
+    """Print what a study of virtual fields found, and where its report is."""
+    files = {"report": study.report, "scores": study.scores, "origin": "virtual field"}
+    report(files | answer, rows=[*rows, ("Report", f"{study.report} (virtual field)")])
 
 
 def _shape_entry(score: "ShapeScore") -> dict[str, object]:
@@ -117,8 +113,6 @@ def _shape_line(score: "ShapeScore") -> str:
     )
 
 
-@group.command()
-@guard
 def fidelity(
     *,
     out: ReportFolder = Path("fidelity"),
@@ -160,17 +154,10 @@ def fidelity(
             workers=workers,
             progress=progress,
         )
-    report(
-        _files(study, "virtual field") | {"claims": [asdict(claim) for claim in study.claims]},
-        rows=[
-            *((claim.verdict, f"{claim.claim} {claim.finding}") for claim in study.claims),
-            ("Report", f"{study.report} (virtual field)"),
-        ],
-    )
+    rows = [(claim.verdict, f"{claim.claim} {claim.finding}") for claim in study.claims]
+    _report_virtual(study, rows, claims=study.claims)
 
 
-@group.command()
-@guard
 def benchmarks(
     *,
     out: ReportFolder = Path("benchmarks-report"),
@@ -207,17 +194,14 @@ def benchmarks(
             kept=kept,
             progress=progress,
         )
+    rows = [(one.verdict, f"{one.claim} {one.finding}") for one in study.verdicts]
     report(
-        _files(study, "computed") | {"verdicts": [asdict(one) for one in study.verdicts]},
-        rows=[
-            *((one.verdict, f"{one.claim} {one.finding}") for one in study.verdicts),
-            ("Report", str(study.report)),
-        ],
+        {"report": study.report, "scores": study.scores, "origin": "computed"}
+        | {"verdicts": study.verdicts},
+        rows=[*rows, ("Report", study.report)],
     )
 
 
-@group.command()
-@guard
 def bench(
     *,
     out: ReportFolder = Path("bench"),
@@ -268,15 +252,8 @@ def bench(
             workers=workers,
             progress=progress,
         )
-    cases = {name: str(folder) for name, folder in study.cases.items()}
-    report(
-        _files(study, "virtual field")
-        | {"cases": cases, "means": [asdict(one) for one in study.means]},
-        rows=[
-            *((f"{one.task}, {one.row}", f"{one.error:.3g} {one.unit}") for one in study.means),
-            ("Report", f"{study.report} (virtual field)"),
-        ],
-    )
+    rows = [(f"{one.task}, {one.row}", f"{one.error:.3g} {one.unit}") for one in study.means]
+    _report_virtual(study, rows, cases=study.cases, means=study.means)
 
 
 def _numbers(option: str, written: str) -> range:

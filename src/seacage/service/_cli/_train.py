@@ -1,12 +1,11 @@
 """``seacage train``: from simulations and sensors to a twin."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from seacage.service._cli._console import guard, progress_bar, refusal, report
+from seacage.service._cli._console import progress_bar, refusal, report
 from seacage.service._cli._options import InFolder, Seed, read_cage
 
 if TYPE_CHECKING:
@@ -21,7 +20,6 @@ _INPUTS: "dict[str, tuple[Literal['current', 'waves', 'profile'], ...]]" = {
 }
 
 
-@guard
 def train(
     *,
     campaign: InFolder = None,
@@ -102,12 +100,11 @@ def train(
     lines = twin.models.line_upper
     left_out = _gaps(simulated.simulator, twin) if simulated and simulated.simulator else []
     report(
-        {"written": str(out), "origin": str(twin.origin), "cases": twin.provenance.cases}
-        | {"level": levels, "points": counts, "travel_time": asdict(twin.travel_time)}
+        {"written": out, "origin": twin.origin, "cases": twin.provenance.cases}
+        | {"level": levels, "points": counts, "travel_time": twin.travel_time}
         | {"calibrated": {name: window.calibrated for name, window in windows.items()}}
         | {"parted": {one.line: [one.learned, one.simulated] for one in kinds}}
-        | {"line_loads": {name: asdict(one) for name, one in lines.items()}}
-        | {"left_out": left_out, "unlike": twin.unlike},
+        | {"line_loads": lines, "left_out": left_out, "unlike": twin.unlike},
         rows=[
             ("Written", f"{out} ({twin.origin})"),
             ("Level 1", f"{twin.provenance.cases} simulations, {twin.provenance.law}"),

@@ -10,8 +10,8 @@ from typer.testing import CliRunner
 from seacage.cage import Cage, cage_remarks
 from seacage.dynamics import settle
 from seacage.ocean import SeaState
+from seacage.service._cli import _cage
 from seacage.service._cli._app import app
-from seacage.service._cli._cage import _new
 from seacage.twin import Twin
 
 
@@ -115,7 +115,7 @@ def test_another_ending_is_refused(tmp_path):
 @pytest.fixture
 def terminal(monkeypatch):
     stdin = SimpleNamespace(isatty=lambda: True)
-    monkeypatch.setattr(_new, "sys", SimpleNamespace(stdin=stdin))
+    monkeypatch.setattr(_cage, "sys", SimpleNamespace(stdin=stdin))
 
 
 @pytest.mark.usefixtures("terminal")

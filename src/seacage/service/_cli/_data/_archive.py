@@ -9,15 +9,12 @@ import typer
 
 from seacage.service._cli import _console
 
-group = typer.Typer(help="Whole days of samples as Parquet files: write, read and check them.")
 Folder = Annotated[Path, typer.Argument(file_okay=False, help="Folder of the archive.")]
 Day = Annotated[
     datetime | None, typer.Option(formats=["%Y-%m-%d"], help="UTC. [default: no bound]")
 ]
 
 
-@group.command()
-@_console.guard
 def write(
     folder: Folder,
     *,
@@ -57,13 +54,11 @@ def write(
             count += len(samples)
             progress("archive", done, len(days))
     _console.report(
-        {"folder": str(folder), "files": len(days), "samples": count},
-        rows=[("Archive", str(folder)), ("Files", str(len(days))), ("Samples", str(count))],
+        {"folder": folder, "files": len(days), "samples": count},
+        rows=[("Archive", folder), ("Files", len(days)), ("Samples", count)],
     )
 
 
-@group.command()
-@_console.guard
 def read(
     folder: Folder, *, cage: str, stream: str | None = None, start: Day = None, end: Day = None
 ) -> None:
@@ -102,8 +97,6 @@ def read(
         typer.echo(json.dumps(line))
 
 
-@group.command()
-@_console.guard
 def check(folder: Folder) -> None:
     """Read every file and compare it with what was written; ends with 3 at any fault.
 
@@ -117,8 +110,8 @@ def check(folder: Folder) -> None:
     looked = list(Archive(folder).faults())
     faults = [fault for _, fault in looked if fault]
     _console.report(
-        {"folder": str(folder), "files": len(looked), "faults": faults},
-        rows=[("Files", str(len(looked))), *(("Fault", fault) for fault in faults)],
+        {"folder": folder, "files": len(looked), "faults": faults},
+        rows=[("Files", len(looked)), *(("Fault", fault) for fault in faults)],
     )
     if faults:
         raise _console.exit_with(

@@ -5,11 +5,10 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, report
+from seacage.service._cli._console import report
 from seacage.service._cli._options import DataFolder, InFile, InFolder
 
 
-@guard
 def backup(
     file: Annotated[Path, typer.Argument(dir_okay=False)],
     *,
@@ -44,17 +43,12 @@ def backup(
         cages=[{"twin": twin}] if twin else None,
     )
     manifest = back_up(settings, file, config=config)
-    rows = [
-        ("Backup", f"{file}, {len(manifest.files)} files, {file.stat().st_size / 1e6:.1f} MB"),
-        (
-            "Samples",
-            "in it" if manifest.database is None else _by_hand("pg_dump", manifest.database),
-        ),
-    ]
-    report({"file": str(file), "files": len(manifest.files), "made": manifest.made}, rows=rows)
+    size = f"{len(manifest.files)} files, {file.stat().st_size / 1e6:.1f} MB"
+    samples = "in it" if manifest.database is None else _by_hand("pg_dump", manifest.database)
+    rows = [("Backup", f"{file}, {size}"), ("Samples", samples)]
+    report({"file": file, "files": len(manifest.files), "made": manifest.made}, rows=rows)
 
 
-@guard
 def restore(
     file: Annotated[Path, typer.Argument(exists=True, dir_okay=False)],
     *,
@@ -92,8 +86,7 @@ def restore(
     if manifest.database is not None:
         rows.append(("Samples", _by_hand("pg_restore", manifest.database)))
     rows.append(("Serve", f"seacage serve {' '.join(options)}"))
-    before = str(aside) if aside else None
-    report({"data": str(data), "files": len(manifest.files), "before": before}, rows=rows)
+    report({"data": data, "files": len(manifest.files), "before": aside}, rows=rows)
 
 
 def _by_hand(command: str, database: str) -> str:

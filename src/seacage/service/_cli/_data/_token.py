@@ -5,17 +5,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from seacage.service._cli._console import guard, report, wants_json
+from seacage.service._cli._console import report, wants_json
 from seacage.service._cli._options import DataFolder
 
 if TYPE_CHECKING:
     from seacage.service._auth._token_store import Grant
 
-group = typer.Typer(help="Tokens of the service.")
 
-
-@group.command()
-@guard
 def new(*, data: DataFolder = Path("var"), scope: str, name: str = "") -> None:
     """Make a token; it is printed once, and only its hash is kept.
 
@@ -41,9 +37,7 @@ def new(*, data: DataFolder = Path("var"), scope: str, name: str = "") -> None:
         typer.echo(token)
 
 
-@group.command("list")
-@guard
-def show(*, data: DataFolder = Path("var")) -> None:
+def list_(*, data: DataFolder = Path("var")) -> None:
     """List the tokens: their ids, names, scopes and when they were made.
 
     Example:
@@ -60,8 +54,6 @@ def show(*, data: DataFolder = Path("var")) -> None:
     report({"tokens": tokens}, rows=rows)
 
 
-@group.command()
-@guard
 def revoke(*, data: DataFolder = Path("var"), token: Annotated[str, typer.Argument()]) -> None:
     """Let a token open nothing from now on, in a running service too.
 

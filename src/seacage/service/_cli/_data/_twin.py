@@ -6,16 +6,13 @@ from typing import Annotated
 
 import typer
 
-from seacage.service._cli._console import Exit, exit_with, guard, refusal, report
+from seacage.service._cli._console import Exit, exit_with, refusal, report
 from seacage.service._cli._options import InFile
 
-group = typer.Typer(help="The twins that a service answers by.")
 _PATIENCE_S, _UNKNOWN_S = 60.0, 10.0  # for a service that runs, and for one that may run
 _LOOK_S = 0.2
 
 
-@group.command()
-@guard
 def replace(
     new: Annotated[Path | None, typer.Argument(exists=True, file_okay=False)] = None,
     *,

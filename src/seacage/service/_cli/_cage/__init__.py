@@ -1,1 +1,0 @@
-"""The commands for a cage's file."""
