@@ -290,7 +290,6 @@ def write_response(
     """Write one equilibrium as CF-NetCDF."""
     import xarray
 
-    warnings = (*cage.warnings, *response.warnings)
     moved, share = "displacement from still water", float(response.volume_fraction)
     dataset = xarray.Dataset(
         {
@@ -309,12 +308,11 @@ def write_response(
             "bridle": np.array(cage.bridle_names, dtype=object),
             "axis": np.array(["x", "y", "z"], dtype=object),
         },
-        attrs=_attributes("A net cage at rest in a current", cage)
+        attrs=_attributes("A net cage at rest in a current", cage, *response.warnings)
         | {
             "origin": "computed",
             "law": law,
             **changes,
-            **({"comment": " ".join(warnings)} if warnings else {}),
             **{key: getattr(sea, name) or 0.0 for key, name in sea_columns([sea]).items()},
         },
     )
@@ -326,7 +324,8 @@ def _variable(dims: str, values: Any, units: str = "", long_name: str = "") -> A
     return tuple(dims.split()), values, attributes
 
 
-def _attributes(title: str, cage: Cage | Structure) -> dict[str, Any]:
+def _attributes(title: str, cage: Cage | Structure, *warnings: str) -> dict[str, Any]:
+    comment = " ".join((*cage.warnings, *warnings))
     return {
         "Conventions": "CF-1.11, ACDD-1.3",
         "title": title,
@@ -334,7 +333,7 @@ def _attributes(title: str, cage: Cage | Structure) -> dict[str, Any]:
         "cage": cage.name,
         "cage_toml": cage.to_toml(),
         "axes": "x east, y north, z up; z = 0 at still water",
-        **({"comment": " ".join(cage.warnings)} if cage.warnings else {}),
+        **({"comment": comment} if comment else {}),
     }
 
 
