@@ -124,10 +124,11 @@ Telling = Annotated[QueryOptions, Depends(_read_of_one)]
 
 
 class _Answer:
-    """Tells entities as they were asked for."""
+    """Tells entities as they were asked for, of those that the token may read."""
 
-    def __init__(self, catalogue: Catalogue) -> None:
-        self.catalogue = catalogue
+    def __init__(self, request: Request) -> None:
+        address = str(request.base_url).rstrip("/")
+        self.catalogue = Catalogue(cages=cages_of(request), address=address)
         self._left = _AT_ONCE
 
     def page(self, of: str, found: list[Entity], query: QueryOptions, address: str) -> Entity:
@@ -233,13 +234,7 @@ async def get_root() -> Root:
     )
 
 
-def _answer(request: Request) -> _Answer:
-    """An answer from what the token may read; the guard knew it a moment ago."""
-    address = str(request.base_url).rstrip("/")
-    return _Answer(Catalogue(cages=cages_of(request), address=address))
-
-
-Answering = Annotated[_Answer, Depends(_answer)]
+Answering = Annotated[_Answer, Depends()]
 
 
 def _list_call(name: str) -> Callable[..., Entity]:
