@@ -81,7 +81,7 @@ def _score(twin: Twin, seas: SeaLoads) -> dict[tuple[str, str], np.ndarray]:
     answer, emulator = twin.predict(water), twin.emulator
     assert answer.line is not None
     assert emulator is not None
-    low, inside, _ = emulator.predict(water, duration=HALF_HOUR)
+    low, inside, _ = emulator.predict(water)
     bare, _, _ = emulator.predict(water, spread=False)
     mean = WindowErrors(std=EXPECTED_STD, maximum=EXPECTED_MAXIMUM)
     bridles = twin.cage.bridle_count

@@ -126,11 +126,9 @@ class ShapeError:
     @classmethod
     def none(cls, cage: Cage) -> Self:
         """No error beyond the surrogates' standard deviations."""
-        ring_of = _rings(cage)
-        rings = int(ring_of[-1]) + 1
-        nothing = np.zeros((rings, 3))
+        none = np.zeros((cage.rings + 1, 3))
         return cls(
-            ring_of=ring_of, weight=np.ones(1), mean=nothing, deviation=nothing[None], rest=nothing
+            ring_of=_rings(cage), weight=np.ones(1), mean=none, deviation=none[None], rest=none
         )
 
     @classmethod

@@ -18,11 +18,9 @@ from seacage.surrogates import AdaptiveConformal
 from seacage.twin._answer import INTERVAL_SD
 from seacage.twin._pairs import reading_of
 
-# Length of a block of readings that the intervals are adapted to at once [us]
-BLOCK_US = 600_000_000
-
-ADAPTATION_BLOCK = timedelta(microseconds=BLOCK_US)
+ADAPTATION_BLOCK = timedelta(minutes=10)
 """Length of a block of readings that the intervals are adapted to at once."""
+BLOCK_US = ADAPTATION_BLOCK // timedelta(microseconds=1)
 # Of a line without a living shackle, the power of the depths' factor that its own is: a load
 # changes less with the net than a depth does (decision 95)
 LOAD_POWER = 1 / 3
@@ -115,11 +113,13 @@ def factors_to_json(tracked: Mapping[str, Tracked]) -> str:
     )
 
 
-def factors_from_json(text: str) -> dict[str, Tracked]:
-    """Read back what ``factors_to_json`` wrote; the predictions are made again.
+def factors_from_json(text: str | None) -> dict[str, Tracked]:
+    """Read back what ``factors_to_json`` wrote, if anything; the predictions are made again.
 
     Raises InputError: the text is something else.
     """
+    if text is None:
+        return {}
     try:
         return {
             name: Tracked(

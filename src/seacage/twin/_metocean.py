@@ -174,13 +174,11 @@ class Metocean(Rows):
         a seam; the waves as (hs, hs east, hs north), the profile as its shear, like the current.
         The peak period is left out: ``Models.loads`` has it.
         """
-        still = np.zeros((len(self), 2))
+        shear = np.zeros((len(self), 2)) if self.profile is None else self.profile[:, 2:]
         columns = {
             "current": lambda: current_features(self.current_velocity),
             "waves": lambda: wave_features(self.hs, self.wave_direction),
-            "profile": lambda: current_features(
-                still if self.profile is None else self.profile[:, 2:]
-            ),
+            "profile": lambda: current_features(shear),
         }
         return np.hstack([columns[name]() for name in inputs])
 

@@ -197,15 +197,12 @@ class Models:
             self._block_over_profiles(known.rows(slice(first, first + BLOCK_ROWS)))
             for first in range(0, max(len(known), 1), BLOCK_ROWS)
         ]
-        of_rows = {name: _fill([block[name] for block in blocks], valid) for name in blocks[0]}
+        of_rows = _put_in_rows(blocks, np.flatnonzero(valid), len(valid))
         inside = of_rows["in_domain"] | ~valid
         beyond = "" if inside.all() else self._beyond()
         cage, shackles = self.cage, len(self.cage.shackles)
-        bridle_level, sensor_level = (
-            np.ones(count, dtype=int) for count in (cage.bridle_count, len(cage.sensor_names))
-        )
-        bridle_level[list(self._lines.values())] = 2
-        sensor_level[list(self.corrections)] = 2
+        bridle_level = 1 + np.isin(np.arange(cage.bridle_count), list(self._lines.values()))
+        sensor_level = 1 + np.isin(np.arange(len(cage.sensor_names)), list(self.corrections))
         return Answer(
             valid=valid,
             reason=tuple(
@@ -242,11 +239,10 @@ class Models:
         motion = self.loads.node_motion(known)
         shackles = {one.name: one.bridle for one in self.cage.shackles}
         upper = {shackles[name]: one for name, one in self.line_upper.items()}
-        level = np.ones(len(self.loads.names), dtype=int)
-        level[list(upper)] = 2
+        level = 1 + np.isin(np.arange(len(self.loads.names)), list(upper))
         loads = correct_lines(low, upper, known, bridle)
         rate = self.lines.damage_rate(loads.damage_equivalent.mean)
-        assumed = self.loads.assumes_tp(known)
+        assumed = self.loads.gaps(known)[1]
         counts, bridles = inside & ~assumed, self.cage.bridle_count
         relative = relative_in_waves(self.line_errors.values())
         calibrated = level > 1
@@ -299,17 +295,13 @@ class Models:
             return self._block(water)
         unknown, members = without_profile(water), len(self.profiles.draws)
         here, other = np.flatnonzero(~unknown), np.flatnonzero(unknown)
-        blocks = [self._block(water.rows(here).through(self.inputs))] if len(here) else []
-        few = BLOCK_ROWS // members
+        few, blocks = BLOCK_ROWS // members, list[dict[str, Any]]()
+        if len(here) or not len(other):
+            blocks.append(self._block(water.rows(here).through(self.inputs)))
         for first in range(0, len(other), few):
             each = self.profiles.members(water.rows(other[first : first + few]))
             blocks.append(mix(self._block(each.through(self.inputs)), members))
-        if not blocks:
-            return self._block(water.through(self.inputs))
-        back = np.argsort(np.concatenate([here, other]))
-        every = np.ones(len(water), dtype=bool)
-        joined = {name: _fill([block[name] for block in blocks], every) for name in blocks[0]}
-        return {name: _rows_of(one, back) for name, one in joined.items()}
+        return _put_in_rows(blocks, np.concatenate([here, other]), len(water))
 
     def _block(self, water: Metocean) -> dict[str, Any]:
         """Predict in known water: the fields of an answer that have rows."""
@@ -482,21 +474,18 @@ def _widen(here: Prediction, edge: Prediction, beyond: Bool[np.ndarray, " case"]
     return replace(here, std=std)
 
 
-def _rows_of(value: Any, some: Int[np.ndarray, " row"]) -> Any:
-    if isinstance(value, Prediction):
-        return Prediction(mean=value.mean[some], std=value.std[some])
-    return value[some]
+def _put_in_rows(
+    blocks: Sequence[Mapping[str, Any]], rows: Int[np.ndarray, " row"], count: int
+) -> dict[str, Any]:
+    """Fields of blocks, one after another, in some of so many rows; False or NaN elsewhere."""
 
+    def put(parts: Sequence[Any]) -> Any:
+        if isinstance(parts[0], Prediction):
+            mean, std = (put([getattr(one, key) for one in parts]) for key in ("mean", "std"))
+            return Prediction(mean=mean, std=std)
+        values = np.concatenate(parts)
+        every = np.full((count, *values.shape[1:]), False if values.dtype == bool else np.nan)
+        every[rows] = values
+        return every
 
-def _fill(parts: Sequence[Any], valid: Bool[np.ndarray, " case"]) -> Any:
-    """Values of the valid rows, in all rows; False or NaN elsewhere."""
-    if isinstance(parts[0], Prediction):
-        mean, std = (_fill([getattr(one, key) for one in parts], valid) for key in ("mean", "std"))
-        return Prediction(mean=mean, std=std)
-    values = np.concatenate(parts)
-    if len(values) == len(valid):
-        return values
-    nothing = False if values.dtype == bool else np.nan
-    filled = np.full((len(valid), *values.shape[1:]), nothing)
-    filled[valid] = values
-    return filled
+    return {name: put([block[name] for block in blocks]) for name in blocks[0]}

@@ -106,9 +106,8 @@ class TwinState:
 
     def with_factors(self, adapted: str | None) -> "TwinState":
         """Return a copy with other factors of the intervals; see ``adapted``."""
-        factors = factors_from_json(adapted) if adapted is not None else {}
         expected = {name: one.expected for name, one in self.tracked.items()}
-        return replace(self, tracked=with_predictions(factors, expected))
+        return replace(self, tracked=with_predictions(factors_from_json(adapted), expected))
 
     def with_amendments(self, amendments: Iterable[Amendment]) -> "TwinState":
         """Return a copy in which flags of samples have changed."""

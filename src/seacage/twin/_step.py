@@ -1,7 +1,7 @@
 """The live loop's bookkeeping: which streams sent something, and which are silent."""
 
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
@@ -98,28 +98,27 @@ def _take(
     timeouts: Mapping[str, float],
     limits: StreamTimeouts,
     horizon: datetime,
-) -> list[Notice]:
+) -> Iterator[Flagged]:
+    why = ""
     if sample.stream not in timeouts:
-        return _set_aside(
-            sample, f"no stream {sample.stream!r} here; there are {', '.join(timeouts)}"
-        )
-    if sample.t > now + timedelta(seconds=limits.future_s):
+        why = f"no stream {sample.stream!r} here; there are {', '.join(timeouts)}"
+    elif sample.t > now + timedelta(seconds=limits.future_s):
         ahead = (sample.t - now).total_seconds()
-        return _set_aside(
-            sample, f"its time is {ahead:.0f} s ahead of the clock; check the source's clock"
-        )
+        why = f"its time is {ahead:.0f} s ahead of the clock; check the source's clock"
+    if why:
+        yield Flagged(sample=sample, reason=f"{sample.stream}: set aside, {why}.", used=False)
+        return
     before = streams.get(sample.stream, ())
     after = insert(before, sample, horizon=horizon, disorder_s=limits.disorder_s)
     if after is before:
-        return []
+        return
     streams[sample.stream] = after
+    yield from _new_spikes(before, after)
     moment = sample.t, sample.seq
     seen = (taken.sample for taken in reversed(after))
     flagged = next((one for one in seen if (one.t, one.seq) == moment), sample)
-    notices: list[Notice] = [*_new_spikes(before, after)]
     if is_flagged(flagged):
-        notices.append(Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True))
-    return notices
+        yield Flagged(sample=flagged, reason=" ".join(flagged.remarks), used=True)
 
 
 def _new_spikes(before: Stream, after: Stream) -> list[Flagged]:
@@ -148,7 +147,3 @@ def _with_amendments(samples: Sequence[Sample], amendments: Sequence[Amendment])
         for sample in samples
         if (own := of.get((sample.stream, sample.t)))
     ]
-
-
-def _set_aside(sample: Sample, why: str) -> list[Notice]:
-    return [Flagged(sample=sample, reason=f"{sample.stream}: set aside, {why}.", used=False)]

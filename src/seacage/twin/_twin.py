@@ -56,34 +56,20 @@ class Twin:
     """A cage's digital twin.
 
     ``train`` makes one, ``Twin.read("twin/")`` takes a saved one.
-
-    Parameters
-    ----------
-    models
-        Of every level, and the cage they are of.
-    provenance
-        Of the models.
-    buoy
-        The stream that the inputs come from.
-    timeouts
-        How long streams may be silent, late or ahead.
-    fault_detector
-        Numbers of the fault detector, which reads them in ``assess``.
-    discrepancy
-        Distribution of true shapes about its shapes; None where there is none.
-    travel_time
-        Of the current from the buoy to the cage.
-    current_change
-        Of the buoy's current, by which intervals widen while a sample is held.
     """
 
-    models: Models
-    provenance: Provenance
-    buoy: str = "buoy-1"
+    models: Models  # of every level, and the cage they are of
+    provenance: Provenance  # of the models
+    buoy: str = "buoy-1"  # the stream that the inputs come from
+    # How long streams may be silent, late or ahead
     timeouts: StreamTimeouts = field(default_factory=StreamTimeouts)
+    # Numbers of the fault detector, which reads them in ``assess``
     fault_detector: FaultDetectorSettings = field(default_factory=FaultDetectorSettings)
+    # Distribution of true shapes about its shapes; None where there is none
     discrepancy: Discrepancy | None = None
+    # Of the current from the buoy to the cage
     travel_time: TravelTime = field(default_factory=TravelTime)
+    # Of the buoy's current, by which intervals widen while a sample is held
     current_change: CurrentChange = field(default_factory=CurrentChange)
     # Of the manifest of the folder that it was read from; empty for one that was not read
     sha256: str = field(default="", init=False)
@@ -207,8 +193,7 @@ class Twin:
         trained.
         ``until``: and its ``adapted_until``; None goes on from the first step.
         """
-        tracked = factors_from_json(adapted) if adapted is not None else {}
-        return TwinState(tracked=tracked, adapted_until=until)
+        return TwinState(tracked=factors_from_json(adapted), adapted_until=until)
 
     def step(
         self, state: TwinState, sample: Sample | None, now: datetime
@@ -222,10 +207,8 @@ class Twin:
         ``sample``: None for a tick.
         ``now``: the clock, with its zone; in a replay it is the record's own.
 
-        Returns
-        -------
-        state, events
-            Silence and return of streams first, then flags of the sample, then the answer.
+        Of the events silence and return of streams come first, then flags of the sample, then the
+        answer.
         """
         before = state
         state, notices = self.receive(state, () if sample is None else (sample,), now)

@@ -12,7 +12,6 @@ from seacage.twin._alarms._alarm import Limit
 from seacage.twin._settings import StreamTimeouts
 
 FAULT = "history"  # kind whose limit serves for faults of the service that have none of their own
-_WHOLE = ("severity",)
 _KEYS = tuple(one.name for one in fields(Limit))
 
 
@@ -129,9 +128,8 @@ def _with_table(limit: Limit, entry: object, name: str) -> Limit:
             f"alarms, {name}: the key {unknown[0]!r} is unknown. There are: {', '.join(_KEYS)}."
         )
     for key, value in table.items():
-        kinds = int if key in _WHOLE else (int, float)
+        kinds, whole = (int, "whole ") if key == "severity" else ((int, float), "")
         if isinstance(value, bool) or not isinstance(value, kinds) or not math.isfinite(value):
-            whole = "whole " if key in _WHOLE else ""
             raise InputError(
                 f"alarms, {name}: {key} = {value!r} is no {whole}number or not finite."
             )

@@ -25,7 +25,6 @@ class HeldSeas:
     hs: Float[np.ndarray, " case"]  # as it is, which scales the waves' effect where it is lower [m]
     known: Bool[np.ndarray, " case"]  # where all of the water is known
     inside: Bool[np.ndarray, " case"]  # where it is inside what was learned
-    reason: tuple[str, ...]  # one sentence where it is not, or not known, else ""
     places: Float[np.ndarray, "case 4"]  # in the axes of a domain
 
 
@@ -44,7 +43,7 @@ class LineLoads:
     motion: FittedMotionGP | None = None  # of the nodes in the same seas; None if not learned
 
     def predict(
-        self, water: Metocean, *, duration: float = 1800.0, spread: bool = True
+        self, water: Metocean, *, spread: bool = True
     ) -> tuple[Loads, Bool[np.ndarray, " case"], tuple[str, ...]]:
         """Loads in each row of water, whether it is in the domain, and why not or why none.
 
@@ -56,11 +55,11 @@ class LineLoads:
         part. With it they are wider outside the domain, by how far the loads move beyond its edge.
         """
         if self.waves is None or np.isfinite(water.table).all():
-            loads, inside = self._predict(water, duration, spread=spread)
+            loads, inside = self._predict(water, spread=spread)
         else:
             no_waves = self.gaps(water)[0]
             members, row = self.members(water)
-            loads, near = self._predict(members, duration, spread=spread)
+            loads, near = self._predict(members, spread=spread)
             std = loads.mean.std
             if not spread:
                 std = np.broadcast_to(np.where(no_waves[row, None], 0.0, np.nan), std.shape)
@@ -102,16 +101,10 @@ class LineLoads:
         variance[~seas.known] = np.nan
         return np.sqrt(mean_over_members(variance, row))
 
-    def assumes_tp(self, water: Metocean) -> Bool[np.ndarray, " case"]:
-        """Rows whose period is not known and is taken from the site's waves."""
-        return self.gaps(water)[1]
-
-    def _predict(
-        self, water: Metocean, duration: float, *, spread: bool
-    ) -> tuple[Loads, Bool[np.ndarray, " case"]]:
+    def _predict(self, water: Metocean, *, spread: bool) -> tuple[Loads, Bool[np.ndarray, " case"]]:
         """Loads in each row of water that is all known, and whether it is in the domain."""
         seas = self.hold(water)
-        loads = self.surrogate.predict(seas.x, hs=seas.hs, duration=duration, spread=spread)
+        loads = self.surrogate.predict(seas.x, hs=seas.hs, spread=spread)
         beyond = seas.known & ~seas.inside
         if spread and beyond.any():
             some = _with_zeros(water).limited(
@@ -128,14 +121,8 @@ class LineLoads:
         near = self._near(some)
         places = _places(near)
         inside = known & self.domain.contains(places)
-        reason = np.where(known, np.where(inside, "", NOT_TRAINED), NO_WAVES)
         return HeldSeas(
-            x=load_features(near),
-            hs=some.hs,
-            known=known,
-            inside=inside,
-            reason=tuple(reason.tolist()),
-            places=places,
+            x=load_features(near), hs=some.hs, known=known, inside=inside, places=places
         )
 
     def _near(self, water: Metocean, *, clip: bool = False) -> Metocean:

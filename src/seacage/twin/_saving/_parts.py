@@ -42,14 +42,7 @@ _OF_TWIN = ("provenance", "buoy", "timeouts", "fault_detector", "travel_time", "
 _OF_PARTED = ("line", "learned", "simulated", "campaign_sha256")
 _CHANGES = ("mean", "maximum", "state")  # processes of a ``LoadChange``
 _OF_MODELS = ("inputs", "edge", "still_volume", "line_upper", "depth_ratio", "line_errors")
-Kind = TypeVar(
-    "Kind",
-    surrogates.FittedGaussianProcess,
-    surrogates.FittedLoadGP,
-    surrogates.FittedMotionGP,
-    surrogates.FittedNARGP,
-    surrogates.FittedShapeGP,
-)
+Kind = TypeVar("Kind", bound=surrogates.Fitted)
 Box = tuple[tuple[float, ...], tuple[float, ...]]
 """Lower and upper ends of a domain."""
 

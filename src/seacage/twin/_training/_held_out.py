@@ -45,9 +45,8 @@ class HeldOut:
 
 def thin(pairs: Pairs) -> Pairs:
     """Return at most ``MOST_READINGS`` of the pairs, evenly taken."""
-    if len(pairs) <= MOST_READINGS:
-        return pairs
-    return pairs.rows(np.linspace(0, len(pairs) - 1, MOST_READINGS).round().astype(int))
+    count = min(len(pairs), MOST_READINGS)
+    return pairs.rows(np.linspace(0, len(pairs) - 1, count).round().astype(int))
 
 
 def span_s(pairs: Pairs) -> float:

@@ -42,7 +42,10 @@ def train_parted_lines(
     kinds = list[PartedKind]()
     for one in parted:
         line = _column(whole, one)
-        stay = None if symmetry is None else _images_that_keep(symmetry, line)
+        stay = symmetry
+        if symmetry is not None:  # the images in which the line stays in its place
+            some = symmetry.source[:, line] == line
+            stay = replace(symmetry, turn=symmetry.turn[some], source=symmetry.source[some])
         before, after = _pairs(whole, one)
         loads = load_cases(one, after)
         reference = load_cases(whole, before)
@@ -120,12 +123,6 @@ def _state(
     drift = np.linalg.norm(centre - rest_shape(cage)[collar, :2].mean(axis=0), axis=1)
     clearance = cage.site.water_depth + lowest
     return np.column_stack([campaign.volume / still_volume, clearance, drift])
-
-
-def _images_that_keep(symmetry: Symmetry, line: int) -> Symmetry:
-    """The images in which a line stays in its place."""
-    some = symmetry.source[:, line] == line
-    return replace(symmetry, turn=symmetry.turn[some], source=symmetry.source[some])
 
 
 def _check_unlike(
