@@ -167,8 +167,8 @@ def _folder(kept: str | Path | None) -> AbstractContextManager[str | Path]:
 
 def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> VirtualField:
     """Give the truth to the sensors, and the buoy's word to the radio."""
-    cage, hidden, time = request.cage, request.hidden, request.time
-    chance = np.random.default_rng([request.seed, *b"sensors"])
+    cage, hidden, time, seed = request.cage, request.hidden, request.time, request.seed
+    chance = np.random.default_rng([seed, *b"sensors"])
     radio, air, at_buoy, *own = chance.spawn(3 + len(cage.sensor_names))
     silence = _sensors.radio_silence(hidden, time, radio)
     known = truth.available
@@ -180,9 +180,14 @@ def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> Vir
         name: _sensors.sense(exact[name], hidden, rng, wave_head=head, pressure=pressure, **faults)
         for name, head, rng in zip(exact, heads, own, strict=True)
     }
+    buoy = request.buoy
+    if profile is not None:
+        rng, weather = water_chance(seed)[0], request.weather
+        bins = bins_of_simulated(buoy, profile, weather, hidden=hidden, rng=rng, seed=seed)
+        buoy = with_bins(buoy, bins, seed=seed)
     record = FieldRecord(
         cage=cage.name,
-        buoy=_sensors.receive_buoy(_buoy_with_bins(request, profile), hidden, at_buoy, **faults),
+        buoy=_sensors.receive_buoy(buoy, hidden, at_buoy, **faults),
         sensors=seen,
         origin=Origin.VIRTUAL_FIELD,
         hidden_sha256=hidden.sha256,
@@ -191,16 +196,6 @@ def _simulate(request: FieldRequest, truth: Truth, profile: Place | None) -> Vir
     notes = (*record.notes, *(f"Event: {event}." for event in request.events), _EXACT)
     exactly = replace(record, buoy=request.buoy, sensors=exact, notes=notes)
     return VirtualField(record=record, truth=exactly, means=truth.means)
-
-
-def _buoy_with_bins(request: FieldRequest, profile: Place | None) -> Record:
-    """The buoy's record, with the bins of an ADCP where there is one."""
-    if profile is None:
-        return request.buoy
-    buoy, seed = request.buoy, request.seed
-    rng = water_chance(seed)[0]
-    truth: dict[str, Any] = {"hidden": request.hidden, "rng": rng, "seed": seed}
-    return with_bins(buoy, bins_of_simulated(buoy, profile, request.weather, **truth), seed=seed)
 
 
 def _simulation_notes(request: FieldRequest, truth: Truth) -> tuple[str, ...]:
