@@ -62,8 +62,16 @@ def generated_current(
     default sizes the mean speed is near 0.45 m/s and a few values pass 1 m/s. It is no
     place's climate: origin "virtual field".
 
-    ``seed``: of phases, weather and noise. ``start``: time of the first value, with its zone.
-    ``days``: length of the record. ``every_s``: time between values [s].
+    Parameters
+    ----------
+    seed
+        Of phases, weather and noise.
+    start
+        Time of the first value, with its zone.
+    days
+        Length of the record.
+    every_s
+        Time between values [s].
 
     Source: periods of the constituents: Doodson (1921).
     """
@@ -145,9 +153,16 @@ def waves_at_site(
     The same days of the first year that has them all, lower by a factor; a sea that would then
     be too steep to stand has its period lengthened. The notes say what was done.
 
-    ``record``: of waves: height, period and direction. ``buoy_time``: of the buoy's record, UTC.
-    ``factor``: heights at the site over those of the record [-]. ``most``: highest Hs at the site
-    [m].
+    Parameters
+    ----------
+    record
+        Of waves: height, period and direction.
+    buoy_time
+        Of the buoy's record, UTC.
+    factor
+        Heights at the site over those of the record [-].
+    most
+        Highest Hs at the site [m].
 
     Raises InputError: a record without waves, or one that has those days in no year.
     """

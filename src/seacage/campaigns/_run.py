@@ -58,15 +58,24 @@ def run_campaign(
     settings it goes on where it stopped, and ends with the same numbers. A case that fails
     keeps its result code and does not stop the rest.
 
-    ``cage``: the cage; a ``Structure``'s lines take the bridles' place.
-    ``plan``: the sea states, how long each lasts, and the seed of their waves.
-    ``out``: folder of the store, made if it is not there.
-    ``workers``: processes; None for one per available core, 1 for none beside this one. The
-    answers do not depend on it.
-    ``cluster``: address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of
-    the processes. On processors of one kind the answers do not depend on it.
-    ``progress``: called as ("campaign", done, total) in cases, first with what was there already.
-    ``settings``: those of ``Simulator``, such as ``method="settle"``.
+    Parameters
+    ----------
+    cage
+        The cage; a ``Structure``'s lines take the bridles' place.
+    plan
+        The sea states, how long each lasts, and the seed of their waves.
+    out
+        Folder of the store, made if it is not there.
+    workers
+        Processes; None for one per available core, 1 for none beside this one. The answers
+        do not depend on it.
+    cluster
+        Address of a Dask scheduler, ``tcp://host:8786``, whose workers take the place of the
+        processes. On processors of one kind the answers do not depend on it.
+    progress
+        Called as ("campaign", done, total) in cases, first with what was there already.
+    settings
+        Those of ``Simulator``, such as ``method="settle"``.
 
     Raises InputError: ``out`` holds another campaign, moorings are to be drawn of what states no
     uncertainty, or a line has parted that the mooring has not.

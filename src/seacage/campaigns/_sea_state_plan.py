@@ -82,20 +82,33 @@ class Plan:
         The defaults are the paper's ranges. The first cases of a longer draw with the same
         seed are the shorter draw.
 
-        ``seed``: of the scrambling.
-        ``cases``: how many sea states.
-        ``duration``: of each [s].
-        ``current_speed``: least and largest [m/s].
-        ``current_to``, ``wave_from``: least and largest, clockwise from true north [deg].
-        ``hs``: least and largest significant wave height [m]; (0, 0) leaves the waves out.
-        ``period_ratio``: least and largest Tp / (5 sqrt(Hs)), with Tp in s and Hs in m.
-        ``longest_tp``: peak period at which the largest ratio ends [s].
-        ``corner_every``: one case in so many lies on a corner of the ranges of current speed, Hs
-        and period, in turn, in directions of a draw of their own; None for no corners. A surrogate
-        is least sure there.
-        ``shear``: mean and standard deviation of the current's shear along it, and of that to its
-        right [m/s], normal and at most 2.5 deviations from the mean; None for uniform currents.
-        ``name``: of the plan.
+        Parameters
+        ----------
+        seed
+            Of the scrambling.
+        cases
+            How many sea states.
+        duration
+            Of each [s].
+        current_speed
+            Least and largest [m/s].
+        current_to, wave_from
+            Least and largest, clockwise from true north [deg].
+        hs
+            Least and largest significant wave height [m]; (0, 0) leaves the waves out.
+        period_ratio
+            Least and largest Tp / (5 sqrt(Hs)), with Tp in s and Hs in m.
+        longest_tp
+            Peak period at which the largest ratio ends [s].
+        corner_every
+            One case in so many lies on a corner of the ranges of current speed, Hs and period,
+            in turn, in directions of a draw of their own; None for no corners. A surrogate is
+            least sure there.
+        shear
+            Mean and standard deviation of the current's shear along it, and of that to its right
+            [m/s], normal and at most 2.5 deviations from the mean; None for uniform currents.
+        name
+            Of the plan.
 
         Source: Sobol (1967); scrambling after Owen (1998), as ``scipy.stats.qmc.Sobol`` does it.
         """

@@ -84,18 +84,26 @@ def settle(
     the load asks, hanging straight, nearly flat, then swung aside. The first found that is not
     proved unstable is the answer; ``Response`` says how many there are and how far apart.
 
-    - ``cage``: of a ``Structure`` the "bridles" are its lines, and displacements are from the
-      design.
-    - ``law``: "aarsnes", "loland" or "kristiansen-faltinsen": one for all cases or one for each.
-    - ``sea``, ``skin_friction``, ``lift_factor``, ``wake``, ``hold_collar``, ``workers``: as in
-      ``simulate``.
-    - ``mooring``: "catenary": frame ropes, buoys, and anchor lines that lift off the sea bed and
-      come to lie on it; or "springs" under the frame corners, for old campaigns (``SPRINGS``).
-    - ``mean_waves``: take waves' mean effect on the net's drag; without it a sea with waves is
-      refused, as an equilibrium has none.
-    - ``collar_drag``: whether the current drags on collar and sinker tube.
-    - ``parted``: names of lines that bear nothing; displacements are from the whole cage at rest.
-    - ``starts``: first shapes to seek equilibria from; 1 takes half the time of 2.
+    Parameters
+    ----------
+    cage
+        Of a ``Structure`` the "bridles" are its lines, and displacements are from the design.
+    law
+        "aarsnes", "loland" or "kristiansen-faltinsen": one for all cases or one for each.
+    sea, skin_friction, lift_factor, wake, hold_collar, workers
+        As in ``simulate``.
+    mooring
+        "catenary": frame ropes, buoys, and anchor lines that lift off the sea bed and come to
+        lie on it; or "springs" under the frame corners, for old campaigns (``SPRINGS``).
+    mean_waves
+        Take waves' mean effect on the net's drag; without it a sea with waves is refused,
+        as an equilibrium has none.
+    collar_drag
+        Whether the current drags on collar and sinker tube.
+    parted
+        Names of lines that bear nothing; displacements are from the whole cage at rest.
+    starts
+        First shapes to seek equilibria from; 1 takes half the time of 2.
 
     Raises InputError: waves without ``mean_waves``, no sea at all, no start, a line that the
     mooring has not, or a cage that cannot float or has not what the mooring needs.

@@ -78,10 +78,17 @@ def sample_waves(sea: SeaState, *, seed: int, components: int = 200, depth: floa
     Gaussian sea by 3.0 %. Left out: spreading of direction, and waves shorter than a quarter of
     the peak's period. Without waves every amplitude is 0.
 
-    ``sea``: to realise. ``seed``: the same gives the same waves.
-    ``components``: how many waves. With 200 the largest crest of half an hour is that of a Gaussian
-    sea within 1 % in the mean; with 30 it is 3 % low.
-    ``depth``: of the water [m].
+    Parameters
+    ----------
+    sea
+        What to realise.
+    seed
+        The same seed gives the same sea.
+    components
+        How many waves. With 200 the largest crest of half an hour is that of a Gaussian sea
+        within 1 % in the mean; with 30 it is 3 % low.
+    depth
+        Of the water [m].
     """
     random = np.random.default_rng(seed)
     edges = frequency_bins(sea, components)
@@ -120,9 +127,16 @@ def regular_wave(*, height: float, period: float, wave_from: float, depth: float
 
     Raises InputError: a height, period or depth that is no positive number, or a wave that breaks.
 
-    ``height``: crest to trough [m]. ``period``: [s].
-    ``wave_from``: where it comes from, clockwise from true north [deg].
-    ``depth``: of the water [m].
+    Parameters
+    ----------
+    height
+        Crest to trough [m].
+    period
+        [s].
+    wave_from
+        Where it comes from, clockwise from true north [deg].
+    depth
+        Of the water [m].
 
     Source: Miche (1944): a wave breaks above H = 0.142 L tanh(k depth).
     """

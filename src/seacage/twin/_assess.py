@@ -28,13 +28,22 @@ def assess(
     Nothing is read but the arguments. A number that is not known neither raises nor clears,
     and where the clock has jumped all delays start again.
 
-    ``book``: from ``AlarmBook.new`` or from the last call.
-    ``twin``, ``state``, ``answered``: the twin, its state after a step, and the step's answer.
-    ``policy``: the limits.
-    ``trouble``: the service's own faults: a sentence by the alarm's name, such as
-    ``history.store``. A fault that is not named any more is over.
+    Parameters
+    ----------
+    book
+        From ``AlarmBook.new`` or from the last call.
+    twin, state, answered
+        The twin, its state after a step, and the answer of that step.
+    policy
+        The limits.
+    trouble
+        The service's own faults: a sentence by the alarm's name, such as ``history.store``. A
+        fault that is not named any more is over.
 
-    Returns the book and the journal's lines in order.
+    Returns
+    -------
+    book, events
+        The journal's lines in order.
     """
     now = answered.t
     book = book.at(now, jump_s=policy.jump_s)

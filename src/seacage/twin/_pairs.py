@@ -60,15 +60,22 @@ def align(
     Readings that failed a check, and times without a sound and fresh sample of the buoy, are
     left out.
 
-    ``field``, ``sensor``: the record, and the name of one of its sensors.
-    ``start``, ``end``: of the sensor's readings that count: start <= t < end; both ends open where
-    left out.
-    ``mean_s``: averages over windows so long [s], which begin at whole multiples since 1970: the
-    sensor's readings, and the buoy's vectors as they were held at each of them. The time is the
-    middle of the window.
-    ``hold_s``: largest age of the buoy's sample [s].
-    ``suspect``: keep readings, of sensor or buoy, that a check found suspect.
-    ``travel_time``: of the current from the buoy to the cage; None for none.
+    Parameters
+    ----------
+    field, sensor
+        The record, and the name of one of its sensors.
+    start, end
+        Of the sensor's readings that count: start <= t < end; both ends open where left out.
+    mean_s
+        Averages over windows so long [s], which begin at whole multiples since 1970: the
+        sensor's readings, and the buoy's vectors as they were held at each of them. The time
+        is the middle of the window.
+    hold_s
+        Largest age of the buoy's sample [s].
+    suspect
+        Keep readings, of sensor or buoy, that a check found suspect.
+    travel_time
+        Of the current from the buoy to the cage; None for none.
     """
     if sensor not in field.sensors:
         raise InputError(

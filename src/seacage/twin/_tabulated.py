@@ -67,13 +67,18 @@ class TabulatedTwin:
 
         Raises InputError: the twin has waves as an input too, or the tolerance cannot be met.
 
-        ``twin``: whose inputs are the current alone.
-        ``tolerance``, ``std_tolerance``: largest error of a mean in predictive standard deviations,
-        and of a standard deviation in itself.
-        ``least_tension_std``, ``least_depth_std``: standard deviations below these count as these
-        [N], [m]: a simulator is emulated with almost no variance close to its own cases, more
-        sharply than any sensor sees.
-        ``most_nodes``: largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
+        Parameters
+        ----------
+        twin
+            Whose inputs are the current alone.
+        tolerance, std_tolerance
+            Largest error of a mean in predictive standard deviations, and of a standard
+            deviation in itself.
+        least_tension_std, least_depth_std
+            Standard deviations below these count as these [N], [m]: a simulator is emulated
+            with almost no variance close to its own cases, more sharply than any sensor sees.
+        most_nodes
+            Largest size; a node takes 0.64 kB for 12 bridles and 8 sensors.
         """
         inputs = twin.models.inputs
         if inputs != ("current",):

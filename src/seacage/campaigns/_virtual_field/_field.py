@@ -84,22 +84,37 @@ def virtual_field(
     a shear its mean over the net's depth is kept, and the buoy's stream passes through as it came.
     With a profile the settled cage feels the shear itself, to first order.
 
-    ``cage``: as drawn; its sensors are the ones simulated.
-    ``buoy``: what the buoy measured, generated or real. Its waves are those at the cage if it
-    carries any.
-    ``hidden``: how the truth differs.
-    ``seed``: of weather, noise and outages. The hidden cage does not depend on it.
-    ``method``: "simulate" takes hours of computing for weeks, "settle" minutes.
-    ``waves``: beside the buoy's current; None for the buoy's own, or none.
-    ``events``: what goes wrong, and when.
-    ``every_s``: time between readings [s]; None for 2 s simulated, 60 s settled.
-    ``timetable``: how simulated time is cut; None for ``Timetable.over`` the buoy's record.
-    ``profile``: where an ADCP measures the current at several depths, which the buoy's stream then
-    carries: at the buoy or at the cage. None for no ADCP.
-    ``kept``: folder that keeps finished stretches, or the settled grid, for another call: after a
-    stop it goes on from them, to the same bits. None begins anew.
-    ``workers``: processes; None for one per available core. The numbers do not depend on it.
-    ``progress``: called as ("virtual field", done, total), in simulated hours or in equilibria.
+    Parameters
+    ----------
+    cage
+        As drawn; its sensors are the ones simulated.
+    buoy
+        What the buoy measured, generated or real. Its waves are those at the cage if it
+        carries any.
+    hidden
+        How the truth differs.
+    seed
+        Of weather, noise and outages. The hidden cage does not depend on it.
+    method
+        "simulate" takes hours of computing for weeks, "settle" minutes.
+    waves
+        Beside the buoy's current; None for the buoy's own, or none.
+    events
+        What goes wrong, and when.
+    every_s
+        Time between readings [s]; None for 2 s simulated, 60 s settled.
+    timetable
+        How simulated time is cut; None for ``Timetable.over`` the buoy's record.
+    profile
+        Where an ADCP measures the current at several depths, which the buoy's stream then carries:
+        at the buoy or at the cage. None for no ADCP.
+    kept
+        Folder that keeps finished stretches, or the settled grid, for another call: after a
+        stop it goes on from them, to the same bits. None begins anew.
+    workers
+        Processes; None for one per available core. The numbers do not depend on it.
+    progress
+        Called as ("virtual field", done, total), in simulated hours or in equilibria.
 
     Raises InputError: a record too short, events that cannot be, ``kept`` of another field; waves,
     events or a timetable for a settled field.

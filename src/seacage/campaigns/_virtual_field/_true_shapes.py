@@ -58,8 +58,16 @@ def true_shapes(
     for a record's own are mostly slow. Left out, as in every settled field: waves, the current's
     profile, and that a cage takes time to follow. Growth is rounded to a quarter of the whole.
 
-    ``cage``, ``hidden``, ``workers``: as for ``virtual_field``. ``seeds``: one record each.
-    ``cases``: times of each record. ``progress``: called as ("shape error", done, total) in cases.
+    Parameters
+    ----------
+    cage, hidden, workers
+        As for ``virtual_field``.
+    seeds
+        One record each.
+    cases
+        Times of each record.
+    progress
+        Called as ("shape error", done, total) in cases.
     """
     if cases < 1 or not seeds:
         raise InputError(f"true_shapes: {len(seeds)} seeds of {cases} cases hold none. Ask for 1.")

@@ -24,11 +24,19 @@ def catenary(
     End B lies ``x_span`` beside and ``z_span`` above end A. Bending, drag and a sloping
     sea bed are left out.
 
-    ``x_span``, ``z_span``: horizontal (above 0) and vertical (at least 0) [m].
-    ``length``: unstretched [m]. ``axial_stiffness``: EA [N].
-    ``weight``: submerged, per metre (above 0) [N/m].
-    ``seabed_friction``: coefficient of a flat sea bed at A's height; 0 lets the line slide on it.
-    None: there is no sea bed, and the line may hang below A.
+    Parameters
+    ----------
+    x_span, z_span
+        From A to B, horizontal (above 0) and vertical (at least 0) [m].
+    length
+        Unstretched [m].
+    axial_stiffness
+        EA [N].
+    weight
+        Submerged, per metre (above 0) [N/m].
+    seabed_friction
+        Friction coefficient of a flat sea bed at A's height; 0 lets the line slide on it.
+        None: there is no sea bed, and the line may hang below A.
 
     Returns the force on A and that on B (horizontal, vertical), x towards B, z up [N].
 

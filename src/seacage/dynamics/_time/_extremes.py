@@ -38,10 +38,16 @@ def extremes(
     probable maximum has N (1 − F) = 1. Left out: that the sea itself is known only within the
     scatter of the simulations where they are few, and peaks that depend on one another.
 
-    ``tension``: of each simulation, which differ in their seeds alone [N].
-    ``every``: between samples [s].
-    ``hours``: in which the largest is wanted [h].
-    ``has_waves``: without waves the largest tension is the mean.
+    Parameters
+    ----------
+    tension
+        Of each simulation, which differ in their seeds alone [N].
+    every
+        Between samples [s].
+    hours
+        In which the largest is asked for [h].
+    has_waves
+        Without waves the largest tension is the mean.
 
     Source: Naess and Moan (2013), Stochastic Dynamics of Marine Structures, on fitted peaks;
     plotting positions after Benard and Bos-Levenbach (1953).

@@ -59,23 +59,36 @@ def follow(
     It starts from an equilibrium near by; nothing counts before ``spin_up``. A stretch's
     numbers do not depend on those beside it.
 
-    - ``weathers``, ``starts``: of each stretch: what it meets, and from when it counts [s]; at most
-      as many as ``simulation_lanes()``.
-    - ``duration``: that counts, of all stretches [s].
-    - ``every``: between samples; the current is taken for the middle of each such time [s].
-    - ``spin_up``: simulated before, in the weather before [s].
-    - ``time_step``: at most [s]. Light nodes are lent mass where the step needs it.
-    - ``law``: of the netting. Twine by twine ("morison"), the facing half meets what momentum
-      leaves of the current.
-    - ``skin_friction``, ``lift_factor``: as for ``simulate``.
-    - ``stiffening``: as in ``full_assembly``: a strain, and the ropes' stiffness beyond it over the
-      first.
-    - ``watched``: nodes whose positions are sampled.
-    - ``damaged``, ``breaking``: what is broken from the beginning, and what breaks when counting
-      begins.
-    - ``refined``: panels of this cage along the side of one that ``Damage`` counts in.
-    - ``shape_nodes``: nodes whose means are kept; None for all.
-    - ``progress``: called as ("follow", done, total), in simulated seconds of all stretches.
+    Parameters
+    ----------
+    weathers, starts
+        Of each stretch: what it meets, and from when it counts [s]; at most as many as
+        ``simulation_lanes()``.
+    duration
+        That counts, of all stretches [s].
+    every
+        Between samples; the current is taken for the middle of each such time [s].
+    spin_up
+        Simulated before, in the weather before [s].
+    time_step
+        At most [s]. Light nodes are lent mass where the step needs it.
+    law
+        Of the netting. Twine by twine ("morison"), the facing half meets what momentum leaves
+        of the current.
+    skin_friction, lift_factor
+        As for ``simulate``.
+    stiffening
+        As in ``full_assembly``: a strain, and the ropes' stiffness beyond it over the first.
+    watched
+        Nodes whose positions are sampled.
+    damaged, breaking
+        What is broken from the beginning, and what breaks when counting begins.
+    refined
+        Panels of this cage along the side of one that ``Damage`` counts in.
+    shape_nodes
+        Nodes whose means are kept; None for all.
+    progress
+        Called as ("follow", done, total), in simulated seconds of all stretches.
 
     Raises InputError: too many stretches or none, times that are no whole number of steps, damage
     to what the cage has not.

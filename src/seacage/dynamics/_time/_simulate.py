@@ -75,45 +75,70 @@ def simulate(
     netting weighs more and is not pushed by the waves' acceleration. A case's numbers do not
     depend on the cases beside it nor on ``workers``.
 
-    - ``cage``: a ``Structure`` whose equilibrium is not found starts as it was designed. Its
-      "bridles" are its lines, its displacement is from the design.
-    - ``sea``: one sea state, or several: a leading case axis.
-    - ``duration``: that counts, after the spin-up [s].
-    - ``seed``: of the waves: one for each case, or the first case's, from which the others count
-      up.
-    - ``law``: "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine; one for
-      all cases or one for each.
-    - ``skin_friction``: of screen laws: C_D of a panel along the flow, falling as 1 − cosθ to
-      nothing for a facing one [-]. None takes the law's own: 0.04 of Aarsnes' and Løland's, 0 of
-      Kristiansen and Faltinsen's.
-    - ``lift_factor``: of screen laws: on C_L [-]. Fits to flume tests have up to twice the laws'
-      lift.
-    - ``twine_drag``: with "morison": drag coefficients of a twine across and along the flow [-].
-      None takes a smooth cylinder's by its Reynolds number, and no skin friction.
-    - ``mooring``: of a ``Cage``, for a ``Structure`` has its own: "catenary", which is frame, buoys
-      and anchor lines, or "springs" under the frame corners, for old campaigns (``SPRINGS``).
-    - ``current_profile``: how the current changes with depth; uniform without.
-    - ``waves``: instead of drawing them from the sea's spectrum: one for all cases or one for each.
-    - ``wake``: whether the down-stream half of the net meets slower water.
-    - ``hold_collar``: keep the collar in its place, as in a tank.
-    - ``collar_drag``: whether collar and sinker tube meet drag.
-    - ``parted``: names of lines that bear nothing from the beginning, as in ``History.lines``.
-    - ``ramp``: over which the waves rise [s].
-    - ``spin_up``: simulated before anything counts, the ramp included [s].
-    - ``time_step``: at most; a whole number of steps makes 0.1 s, in which the water's motion runs
-      straight [s]. Light nodes are lent mass where the step needs it.
-    - ``sample_every``: of the series, in whole tenths of a second [s]; None for no series.
-    - ``series_nodes``: nodes whose series are kept; None for all.
-    - ``quantile_levels``: of positions and tensions; estimated from the samples, or without a
-      series from one sample a second.
-    - ``second_moment``: whether to form the second moment of all coordinates. Its last bits depend
-      on the number of threads that products of matrices run on.
-    - ``pieces``: cut each case's time into so many, at most ``simulation_lanes()``, that are
-      simulated side by side, each after a spin-up of its own in the waves before it: a sea that is
-      simulated alone is then 4 times as fast. The duration is rounded up to whole pieces, and
-      series leap where one begins.
-    - ``workers``: threads to share the cases among.
-    - ``progress``: called as ("simulate", done, total), in simulated seconds of all cases.
+    Parameters
+    ----------
+    cage
+        A ``Structure`` whose equilibrium is not found starts as it was designed. Its "bridles"
+        are its lines, its displacement is from the design.
+    sea
+        One sea state, or several: a leading case axis.
+    duration
+        That counts, after the spin-up [s].
+    seed
+        Of the waves: one for each case, or the first case's, from which the others count up.
+    law
+        "aarsnes", "loland", "kristiansen-faltinsen", or "morison": twine by twine; one for all
+        cases or one for each.
+    skin_friction
+        Of screen laws: C_D of a panel along the flow, falling as 1 − cosθ to nothing for a facing
+        one [-]. None takes the law's own: 0.04 of Aarsnes' and Løland's, 0 of Kristiansen and
+        Faltinsen's.
+    lift_factor
+        Of screen laws: on C_L [-]. Fits to flume tests have up to twice the laws' lift.
+    twine_drag
+        With "morison": drag coefficients of a twine across and along the flow [-]. None takes
+        a smooth cylinder's by its Reynolds number, and no skin friction.
+    mooring
+        Of a ``Cage``, for a ``Structure`` has its own: "catenary", which is frame, buoys and
+        anchor lines, or "springs" under the frame corners, for old campaigns (``SPRINGS``).
+    current_profile
+        How the current changes with depth; uniform without.
+    waves
+        Instead of drawing them from the sea's spectrum: one for all cases or one for each.
+    wake
+        Whether the down-stream half of the net meets slower water.
+    hold_collar
+        Keep the collar in its place, as in a tank.
+    collar_drag
+        Whether collar and sinker tube meet drag.
+    parted
+        Names of lines that bear nothing from the beginning, as in ``History.lines``.
+    ramp
+        Over which the waves rise [s].
+    spin_up
+        Simulated before anything counts, the ramp included [s].
+    time_step
+        At most; a whole number of steps makes 0.1 s, in which the water's motion runs straight
+        [s]. Light nodes are lent mass where the step needs it.
+    sample_every
+        Of the series, in whole tenths of a second [s]; None for no series.
+    series_nodes
+        Nodes whose series are kept; None for all.
+    quantile_levels
+        Of positions and tensions; estimated from the samples, or without a series from one
+        sample a second.
+    second_moment
+        Whether to form the second moment of all coordinates. Its last bits depend on the
+        number of threads that products of matrices run on.
+    pieces
+        Cut each case's time into so many, at most ``simulation_lanes()``, that are simulated
+        side by side, each after a spin-up of its own in the waves before it: a sea that is
+        simulated alone is then 4 times as fast. The duration is rounded up to whole pieces, and
+        series leap where one begins.
+    workers
+        Threads to share the cases among.
+    progress
+        Called as ("simulate", done, total), in simulated seconds of all cases.
 
     Raises InputError: no sea at all, times that make no sense, an unknown law, mooring or line, a
     time step too long for the stiffest line, waves that are not finite, too high or of water of

@@ -63,9 +63,16 @@ def read_record(
     Raises RecordError: a file whose structure is wrong: no such file, no text, no rows, columns
     that the map does not know or misses, a row of another length, a time that is none.
 
-    ``path``: a table, or ``.nc``. ``stream``: what to call the stream.
-    ``columns``: what they mean, or what a foreign NetCDF file leaves open.
-    ``limits``: to check the values of a foreign file against.
+    Parameters
+    ----------
+    path
+        A table, or ``.nc``.
+    columns
+        What the columns mean, or what a foreign NetCDF file leaves open.
+    stream
+        What to call the stream.
+    limits
+        To check the values of a foreign file against.
     """
     path = Path(path)
     if columns is None and (own := read_by_own(path, stream)):

@@ -75,11 +75,24 @@ def inspection_path(
     Raises InputError: a size that is not above 0, too many waypoints, or none with room for the
     stand-off.
 
-    ``net``: as predicted. ``stand_off``: distance to keep [m]. ``side``: of the net.
-    ``pattern``: rows or a spiral. ``row_spacing``: between rows, along the net [m].
-    ``step``: between waypoints, along the net [m].
-    ``top``: depth of the first row, and of the shallowest waypoint [m].
-    ``below``: distance of ``p_below`` in the clearance of the waypoints [m].
+    Parameters
+    ----------
+    net
+        As predicted.
+    stand_off
+        Distance to keep [m].
+    side
+        Of the net.
+    pattern
+        Rows or a spiral.
+    row_spacing
+        Between rows, along the net [m].
+    step
+        Between waypoints, along the net [m].
+    top
+        Depth of the first row, and of the shallowest waypoint [m].
+    below
+        Distance of ``p_below`` in the clearance of the waypoints [m].
     """
     for name, size in {"stand_off": stand_off, "row_spacing": row_spacing, "step": step}.items():
         if not (np.isfinite(size) and size > 0.0):

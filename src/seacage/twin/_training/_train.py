@@ -73,15 +73,24 @@ def train(
 
     Raises NonsenseError: inputs that the field's buoy or the campaign never had.
 
-    ``cage``: must be the campaign's; its sensors may have moved.
-    ``campaign``: of the low fidelity; None with a base.
-    ``field``: None trains level 1 alone.
-    ``parted``: campaigns of the cage without one line each, in seas and waves of the campaign: what
-    is left if a line parts is learned from the pairs.
-    ``base``: a twin of the same cage whose level 1 is taken as it is, and level 2 of every sensor
-    that has not moved: only sensors that moved, or are new, are trained.
-    ``training``: settings; the default suits one buoy and 300 readings of each sensor.
-    ``progress``: called after each model.
+    Parameters
+    ----------
+    cage
+        Must be the campaign's; its sensors may have moved.
+    campaign
+        Of the low fidelity; None with a base.
+    field
+        None trains level 1 alone.
+    parted
+        Campaigns of the cage without one line each, in seas and waves of the campaign: what is
+        left if a line parts is learned from the pairs.
+    base
+        A twin of the same cage whose level 1 is taken as it is, and level 2 of every sensor
+        that has not moved: only sensors that moved, or are new, are trained.
+    training
+        Settings; the default suits one buoy and 300 readings of each sensor.
+    progress
+        Called after each model.
     """
     training = Training() if training is None else training
     _check_inputs(campaign, field, parted, training)
@@ -218,9 +227,16 @@ def update(twin: Twin, field: FieldRecord, *, points: int = 60, mean_s: float = 
     The hyperparameters, the gain and the calibration of each sensor stay, and level 1 is not
     touched. Every reading makes the twin a little slower: where they have doubled, train again.
 
-    ``twin``: with level 2 of some sensors. ``field``: has later readings of some of them.
-    ``points``: readings of each sensor that are taken in, at most, spread over currents and time.
-    ``mean_s``: time over which readings are averaged, as in the training [s].
+    Parameters
+    ----------
+    twin
+        With level 2 of some sensors.
+    field
+        Has later readings of some of them.
+    points
+        Readings of each sensor that are taken in, at most, spread over currents and time.
+    mean_s
+        Time over which readings are averaged, as in the training [s].
     """
     models, windows = twin.models, dict(twin.provenance.training_windows)
     for name, model in twin.models.upper.items():
