@@ -22,7 +22,7 @@ CEILINGS = {
     "classes of the rename table": 0,
     "classes twice in a room": 0,
     "modules too many in a folder": 0,
-    "lines of code": 45_385,
+    "lines of code": 45_020,
 }
 OWN = "said|told|tell|unsaid|heard|unheard|lessons?|taught|judged|doubt|asked"
 PROSE = re.compile(r"\b(lessons?|taught|judged|heard|doubt)\b", re.IGNORECASE)

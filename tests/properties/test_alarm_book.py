@@ -57,6 +57,8 @@ BASELINES = _keywords(
     size=SIZES,
     covariance=TABLES,
     mean_square=SIZES,
+    running_mean=SIZES,
+    long_run_variance=SIZES,
 )
 
 

@@ -120,10 +120,14 @@ class FaultDetectorSettings:
     net_change_sd, net_change_blocks
         Standard deviation of the relative change of drag by another or a cleaned net, the same at
         all sensors [-]; and blocks after it in which another one is not expected: four weeks.
-    block_weight, block_weight_in_waves
+    running_mean_blocks, long_run_memory, long_run_factor
+        Time constant, in blocks, of the running mean that shows how long a sensor's own residuals
+        last: six hours; the blocks over which their long-run variance is estimated by it: two
+        weeks; and the factor on that variance where a twin has waves among its inputs [-], as what
+        these leave unexplained lasts as long as the sea state.
+    block_weight
         Weight of a block's log-likelihood ratio [-], as residuals of neighbouring blocks are
-        correlated; and that of a twin with waves among its inputs, as what these leave unexplained
-        lasts as long as the sea state.
+        correlated.
     evidence_memory
         Blocks after which evidence is forgotten: three days. A fault goes on showing.
     active_widening
@@ -177,8 +181,10 @@ class FaultDetectorSettings:
     half_loss_sd: float = 0.4
     net_change_sd: float = 0.4
     net_change_blocks: int = 1344
+    running_mean_blocks: float = 12.0
+    long_run_memory: float = 672.0
+    long_run_factor: float = 1.5
     block_weight: float = 0.6
-    block_weight_in_waves: float = 0.4
     evidence_memory: float = 144.0
     active_widening: float = 3.0
     limit: float = 28.0

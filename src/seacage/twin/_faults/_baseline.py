@@ -1,5 +1,6 @@
 """Baseline of the residuals: the offset by direction, drag and noise of sensors without a fault."""
 
+import math
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from typing import Self
@@ -46,6 +47,10 @@ class Baseline:
     size: tuple[float, ...] = ()
     covariance: tuple[tuple[float, ...], ...] = ()
     mean_square: tuple[float, ...] = ()  # of each one's own residuals, in variances
+    # Of the same residuals: the running mean, in standard deviations, and the long-run variance, in
+    # variances: that of independent residuals whose mean over hours scatters as much
+    running_mean: tuple[float, ...] = ()
+    long_run_variance: tuple[float, ...] = ()
     blocks: int = 0  # that these sensors have been evaluated for
 
     __pydantic_config__ = json_keys(mean_square="restless")
@@ -53,19 +58,23 @@ class Baseline:
     def of(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Self:
         """Return the same, or the prior of a block's sensors where it was estimated of others."""
         if block.sensors == self.sensors:
-            return self.with_harmonics(settings)
+            return self.with_priors(settings)
         square = (settings.mean_square,) * len(block.sensors)
-        return type(self)(sensors=block.sensors, mean_square=square).with_harmonics(settings)
+        return type(self)(sensors=block.sensors, mean_square=square).with_priors(settings)
 
-    def with_harmonics(self, settings: FaultDetectorSettings) -> Self:
+    def with_priors(self, settings: FaultDetectorSettings) -> Self:
         """Return the same, or with the prior of what a state that was saved before has not."""
-        missing = _TERMS * len(self.sensors) - len(self.size)
+        sensors, after = len(self.sensors), self
+        if len(self.long_run_variance) < sensors:
+            variance = (settings.mean_square,) * sensors
+            after = replace(after, running_mean=(0.0,) * sensors, long_run_variance=variance)
+        missing = _TERMS * sensors - len(self.size)
         if missing == 0:
-            return self
+            return after
         covariance = _prior(self.sensors, settings)
         covariance[:-missing, :-missing] = self.covariance or 0.0
         size = self.size + (0.0,) * missing
-        return replace(self, size=size, covariance=as_tuples(covariance))
+        return replace(after, size=size, covariance=as_tuples(covariance))
 
     def widened(self, settings: FaultDetectorSettings) -> Self:
         """Return a copy with the prior covariance, as the cage has changed."""
@@ -89,6 +98,10 @@ class Baseline:
             size=tuple(np.where(whole, 0.0, self.size).tolist()),
             covariance=as_tuples(covariance),
             mean_square=tuple(np.where(own, settings.mean_square, self.mean_square).tolist()),
+            running_mean=tuple(np.where(own, 0.0, self.running_mean).tolist()),
+            long_run_variance=tuple(
+                np.where(own, settings.mean_square, self.long_run_variance).tolist()
+            ),
         )
 
     def shift(self, block: ResidualBlock, settings: FaultDetectorSettings) -> Shift:
@@ -108,6 +121,7 @@ class Baseline:
         faults: Iterable[Shift],  # the shifts of active faults
         settings: FaultDetectorSettings,  # of the fault detector
         *,
+        quiet: Mask,  # sensors without an active alarm
         noise_of: Mask | None = None,  # received sensors of which the noise alone is updated
     ) -> Self:
         """Return a copy updated by a block, less the shifts of active faults."""
@@ -115,16 +129,21 @@ class Baseline:
         shift = self.shift(block, settings).plus(faults)
         residual = (block.residual - shift.mean)[received]
         spread = shift.covariance[np.ix_(received, received)]
-        # The square of each sensor's residual given those of the others.
+        # Each sensor's residual given those of the others, in its own standard deviations.
         mean_square, known = np.array(self.mean_square), np.linalg.inv(spread)
-        alone = np.minimum((known @ residual) ** 2 / np.diag(known), settings.most_square)
-        change = np.zeros_like(mean_square)
-        change[received] = (
-            alone * self._inflation(block, settings)[received] - mean_square[received]
-        )
+        own, most = np.zeros_like(mean_square), math.sqrt(settings.most_square)
+        own[received] = np.clip(known @ residual / np.sqrt(np.diag(known)), -most, most)
+        own *= np.sqrt(self._inflation(block, settings))
         of = received if noise_of is None else noise_of
-        mean_square[of] += change[of] / settings.mean_square_memory
-        after = replace(self, mean_square=tuple(mean_square.tolist()), blocks=self.blocks + 1)
+        mean_square[of] += (own**2 - mean_square)[of] / settings.mean_square_memory
+        running_mean, variance = self._long_run(own, received, quiet, settings)
+        after = replace(
+            self,
+            mean_square=tuple(mean_square.tolist()),
+            running_mean=tuple(running_mean.tolist()),
+            long_run_variance=tuple(variance.tolist()),
+            blocks=self.blocks + 1,
+        )
         if noise_of is not None:
             return after
         size, covariance = np.array(self.size), np.array(self.covariance)
@@ -154,12 +173,39 @@ class Baseline:
         noisier = np.where(np.isin(self.sensors, list(sensors)), more, mean_square)
         return replace(self, mean_square=tuple(noisier.tolist()))
 
+    def _long_run(
+        self,
+        own: Float[np.ndarray, " sensor"],  # residuals of a block, in standard deviations
+        received: Mask,
+        quiet: Mask,
+        settings: FaultDetectorSettings,
+    ) -> tuple[Float[np.ndarray, " sensor"], Float[np.ndarray, " sensor"]]:
+        """Return the running mean and the long-run variance after a block.
+
+        The running mean of independent residuals with a time constant of n has 1 / (2 n - 1) of
+        their variance. It is updated while evidence rises too, as that is when residuals last.
+
+        Source: Roberts (1959), Control chart tests based on geometric moving averages.
+        """
+        mean, variance = np.array(self.running_mean), np.array(self.long_run_variance)
+        blocks = settings.running_mean_blocks
+        mean[received] += (own - mean)[received] / blocks
+        mean[~quiet] = 0.0
+        most = settings.most_square * np.maximum(self.mean_square, settings.mean_square)
+        square = np.minimum((2.0 * blocks - 1.0) * mean**2, most)
+        of = received & quiet
+        variance[of] += (square - variance)[of] / settings.long_run_memory
+        return mean, variance
+
     def _inflation(
         self, block: ResidualBlock, settings: FaultDetectorSettings
     ) -> Float[np.ndarray, " sensor"]:
         """Factor on the twin's variance of each sensor [-]."""
         new = (settings.carried_factor - 1.0) * np.exp(-self.blocks / settings.carried_blocks)
         noise = np.maximum(1.0, settings.inflation * np.array(self.mean_square))
+        if block.in_waves:
+            lasting = settings.long_run_factor * np.array(self.long_run_variance)
+            noise = np.maximum(noise, lasting)
         return noise * (1.0 + new * block.carried)
 
     @staticmethod

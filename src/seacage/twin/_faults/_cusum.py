@@ -74,11 +74,10 @@ def update_evidence(
     ratio = log_density(residual[:, received], (noise + added)[both], tails)
     ratio -= log_density(without[:, received], noise[both], tails)
     after = dict[str, Evidence]()
-    weight = settings.block_weight_in_waves if block.in_waves else settings.block_weight
     for row, one in enumerate(among):
         before = evidence[one.name].cusum if one.name in evidence else 0.0
         kept = (1.0 - 1.0 / settings.evidence_memory) * before
-        cusum = kept + weight * float(ratio[row])
+        cusum = kept + settings.block_weight * float(ratio[row])
         if cusum > 0.0:
             size, covariance = kalman_update(
                 *prior[row],

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Self
 
+import numpy as np
+
 from seacage.cage import Cage
 from seacage.twin._alarms._alarm import AlarmInput
 from seacage.twin._events import Answered
@@ -58,7 +60,7 @@ class FaultDetector:
         stays where these are active.
         """
         kind, _, source = alarm.partition(".")
-        before = self.baseline.with_harmonics(settings)
+        before = self.baseline.with_priors(settings)
         if kind == "net":
             baseline, changed = before.after_net_change(settings), settings.net_change_blocks
         else:
@@ -110,11 +112,12 @@ class FaultDetector:
         shifts = shifts_of_active(evidence, among, ours, settings).values()
         # All is updated where there is little evidence of a fault, but not while the net has lost
         # drag: what grows back would be taken for the usual.
-        noisy = None
-        if "net.net" in ours or best >= settings.calm * settings.limit:
-            noisy = before.baseline.noisy(block, settings)
-            noisy &= [f"irregular.{name}" not in ours for name in block.sensors]
-        baseline = before.baseline.updated(block, shifts, settings, noise_of=noisy)
+        noisy, torn = None, "net.net" in ours
+        regular = np.array([f"irregular.{name}" not in ours for name in block.sensors], dtype=bool)
+        if torn or best >= settings.calm * settings.limit:
+            noisy = before.baseline.noisy(block, settings) & regular
+        quiet = regular & (not torn)
+        baseline = before.baseline.updated(block, shifts, settings, quiet=quiet, noise_of=noisy)
         waited = before.waited + 1 if best >= settings.limit else 0
         return replace(after, baseline=baseline, waited=waited, changed=max(self.changed - 1, 0))
 

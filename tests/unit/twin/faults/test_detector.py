@@ -33,6 +33,7 @@ TENSION = 1e3 * np.array([1.0, 5.0, 1.0, 1.0, 5.0, 1.0, 40.0, 20.0, 42.0, 41.0, 
 NORTH = np.array([0.1, 0.5])
 NOON = datetime(2020, 2, 1, 12, tzinfo=UTC)
 DAY = 48
+ALL = np.ones(len(NAMES), dtype=bool)
 SETTINGS = FaultDetectorSettings()
 LIMIT, LEAD = SETTINGS.limit, SETTINGS.lead
 
@@ -93,6 +94,7 @@ class Watched:
         self.raised: list[str] = []
         self.detail: dict[str, str] = {}
         self.blocks = 0
+        self.in_waves = False
 
     def through(
         self,
@@ -110,7 +112,8 @@ class Watched:
         for error in errors:
             self.blocks += 1
             seen = block(error, names, tide=0.6 + 0.4 * np.sin(2.0 * np.pi * self.blocks / 12.4))
-            seen = replace(seen, residual=seen.residual - lost * seen.drag * seen.received)
+            kept = seen.residual - lost * seen.drag * seen.received
+            seen = replace(seen, residual=kept, in_waves=self.in_waves)
             if halved is not None:
                 half_drag = halved * (seen.current[1] / NORTH[1]) ** 2
                 seen = replace(seen, half_drag=half_drag, residual=seen.residual + half_drag)
@@ -187,7 +190,7 @@ def test_the_baseline_finds_how_a_sensor_s_offset_turns_with_the_current():
     blocks = turning(10.0)
     baseline = Baseline().of(blocks[0], SETTINGS)
     for seen in blocks[: 8 * DAY]:
-        baseline = baseline.updated(seen, [], SETTINGS)
+        baseline = baseline.updated(seen, [], SETTINGS, quiet=ALL)
     late = blocks[8 * DAY :]
     shift = np.array([baseline.shift(seen, SETTINGS).mean[3] for seen in late])
     residual = np.array([seen.residual[3] for seen in late])
@@ -332,15 +335,56 @@ def test_a_higher_limit_raises_nothing_and_a_larger_weight_raises_sooner():
     assert blocks[1] < blocks[0]
 
 
-def test_a_block_counts_less_where_the_prediction_has_waves():
-    off = block(only("depth-1", 8.0 * OWN[0]))
-    calm, rough = (
-        Watched().detector.updated(one, ACE, SETTINGS, active=frozenset()).cusums()
-        for one in (off, replace(off, in_waves=True))
+def lasting(seed: int, days: float, memory: float) -> np.ndarray:
+    """Quiet residuals, and at depth-1 more of them, which last."""
+    more = noise(seed, round(days * DAY), memory=memory)
+    return quiet(seed + 1, days) + more * only("depth-1", 1.0)
+
+
+def test_in_waves_residuals_that_last_count_as_more_noise():
+    more = list[float]()
+    for memory in (0.0, 0.9):
+        watch = Watched().through(lasting(61, 20.0, memory))
+        assert watch.raised == []
+        rough, calm = (
+            watch.detector.baseline.shift(
+                replace(block(np.zeros(8)), in_waves=waves), SETTINGS
+            ).covariance
+            for waves in (True, False)
+        )
+        more.append((rough - calm)[0, 0] / OWN[0] ** 2)
+    assert 0.0 <= more[0] < 0.5
+    assert more[1] > 1.0
+
+
+def test_in_waves_a_sensor_that_is_off_is_found():
+    watch = learned()
+    watch.in_waves = True
+    watch.through(quiet(63, 1.0) + only("depth-1", 6.0 * OWN[0]))
+    assert watch.raised == ["irregular.depth-1"]
+
+
+@pytest.mark.parametrize("alarm", ["irregular.depth-1", "net.net"])
+def test_the_long_run_variance_of_a_sensor_with_an_alarm_stays(alarm):
+    watch = learned()
+    before = watch.detector.baseline.long_run_variance
+    detector = watch.detector
+    for _ in range(DAY):
+        off = block(only("depth-1", 5.0 * OWN[0]) + only("depth-2", 2.0 * OWN[1]))
+        detector = detector.updated(off, ACE, SETTINGS, active=frozenset({alarm}))
+    after = detector.baseline.long_run_variance
+    assert after[0] == before[0]
+    assert (after[1] == before[1]) == (alarm == "net.net")
+
+
+def test_a_baseline_that_was_saved_without_a_long_run_variance_begins_with_the_prior():
+    watch = learned()
+    old = replace(watch.detector.baseline, running_mean=(), long_run_variance=())
+    after = replace(watch.detector, baseline=old).updated(
+        block(np.zeros(8)), ACE, SETTINGS, active=frozenset()
     )
-    ratio = SETTINGS.block_weight_in_waves / SETTINGS.block_weight
-    assert ratio < 1.0
-    assert rough["irregular.depth-1"] == pytest.approx(ratio * calm["irregular.depth-1"])
+    np.testing.assert_allclose(after.baseline.long_run_variance, SETTINGS.mean_square, rtol=0.01)
+    assert after.baseline.mean_square != old.with_priors(SETTINGS).long_run_variance
 
 
 @pytest.mark.parametrize("value", [0.0, -1.0, np.nan, np.inf])
