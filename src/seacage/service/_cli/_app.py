@@ -60,19 +60,18 @@ def _options(
     del version
 
 
-def _add(group: typer.Typer, *commands: Callable[..., None]) -> None:
-    """Add commands by the names of their functions."""
+def _add(group: typer.Typer, *commands: Callable[..., None], **context: bool) -> None:
+    """Add commands by the names of their functions, with settings of their context."""
     for command in commands:
-        # The job array's command passes on what `campaign run` takes.
-        settings = {"ignore_unknown_options": True} if command is _campaign.slurm else None
         name = command.__name__.strip("_").replace("_", "-")
-        group.command(name, context_settings=settings)(guard(command))
+        group.command(name, context_settings=context)(guard(command))
 
 
-def _add_group(name: str, text: str, *commands: Callable[..., None]) -> None:
+def _add_group(name: str, text: str, *commands: Callable[..., None]) -> typer.Typer:
     group = typer.Typer(help=text)
     _add(group, *commands)
     app.add_typer(group, name=name)
+    return group
 
 
 _add(app, _settle.settle, _simulate.simulate, _train.train, _score.if_parted, _score.score)
@@ -81,7 +80,7 @@ _add(app, _publish.publish, _backup.backup, _backup.restore, _doctor.doctor)
 _add_group(
     "cage", "A cage's file: write one, check it, draw it.", _cage.new, _cage.check, _cage.draw
 )
-_add_group(
+_campaigns = _add_group(
     "campaign",
     "Many simulations: run them here or on a cluster, see how far they are, export them.",
     _campaign.run,
@@ -89,8 +88,9 @@ _add_group(
     _campaign.finish,
     _campaign.export,
     _campaign.import_,
-    _campaign.slurm,
 )
+# The job array's command passes on what `campaign run` takes.
+_add(_campaigns, _campaign.slurm, ignore_unknown_options=True)
 _add_group(
     "field",
     "Records of buoys and sensors: make, read and check them.",
