@@ -51,7 +51,6 @@ def align(
     start: datetime | None = None,
     end: datetime | None = None,
     mean_s: float | None = None,
-    hold_s: float = HOLD_S,
     suspect: bool = False,
     travel_time: TravelTime | None = None,
 ) -> Pairs:
@@ -70,8 +69,6 @@ def align(
         Averages over windows so long [s], which begin at whole multiples since 1970: the
         sensor's readings, and the buoy's vectors as they were held at each of them. The time
         is the middle of the window.
-    hold_s
-        Largest age of the buoy's sample [s].
     suspect
         Keep readings, of sensor or buoy, that a check found suspect.
     travel_time
@@ -97,7 +94,7 @@ def align(
     trusted = np.logical_and.reduce(
         [_sound(field.buoy, key, suspect=suspect) for key in input_keys(["current"])]
     )
-    known = (age <= hold_s) & trusted[held]
+    known = (age <= HOLD_S) & trusted[held]
     water = (travel_time or TravelTime()).water_at(field.buoy, time[known])
     pairs = Pairs(time=time[known], metocean=water, value=value[known])
     return pairs if mean_s is None else _block_means(pairs, mean_s)

@@ -8,14 +8,13 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, tzinfo
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any, Self
 from zoneinfo import ZoneInfo
 
 import numpy as np
 from jaxtyping import Float
 
-from seacage.conventions import Origin, RecordError, read_text
+from seacage.conventions import Origin, RecordError
 from seacage.records._keys import (
     CURRENT,
     NO_MEAN_PERIOD,
@@ -212,14 +211,6 @@ class ColumnMap:
                 f"{self.title}: {named[0]!r} is no number of a column. Where header = false, "
                 "columns are named by number, from 1."
             )
-
-    @classmethod
-    def read(cls, path: Path | str) -> Self:
-        """Read a map from a TOML file, see ``from_toml``.
-
-        Raises RecordError: also where the file cannot be read.
-        """
-        return cls.from_toml(read_text(path, refusal=RecordError), where=str(path))
 
     @classmethod
     def from_toml(cls, text: str, *, where: str = "column map", questions: bool = False) -> Self:

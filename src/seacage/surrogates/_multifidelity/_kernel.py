@@ -29,8 +29,19 @@ TREND = (-6.0, 1.0)
 KNOWN_LENGTH = (0.2, 0.5)
 # A log length of the lowest level counts as known only so far below delta's general one
 STRANGE = 2.5
-# The bend of the published kernel: any smooth curve of the level below, alike everywhere
+MANY = 20  # from so many cases on priors may be broad, as functions that are sums need
+# Second curve where there is no level below: larger, and smoother than the first
+SMOOTH = _gp.StationaryKernel(BELL, variance=(3.0, 4.0), length=(math.log(12.0), 1.5))
+# Any smooth curve of the level below, alike everywhere
 FREE = _gp.StationaryKernel(BELL, variance=None, length=LINK_LENGTH)
+# Curve of the level below, rho and delta with broad priors (decision 111): where a function is a
+# polynomial its length is many spreads, and its variance large to match. Shorter lengths over the
+# level below need thousands of quadrature nodes.
+BROAD = (
+    _gp.StationaryKernel(BELL, variance=None, length=(math.log(10.0), 1.1)),
+    _gp.StationaryKernel(BELL, variance=(2.0, 5.0), length=(math.log(20.0), 3.0)),
+    _gp.StationaryKernel(BELL, variance=(2.0, 5.0), length=(math.log(5.0), 3.0)),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,9 +142,25 @@ class LinkKernel(_gp.Sum):
     bends: bool = True
 
 
-def autoregressive(
+def autoregressive(*, lengths: tuple[float, ...] = (), broad: bool = False) -> LinkKernel:
+    """The NARGP's covariance as published: k_rho(x, x') k_f(f, f') + k_delta(x, x').
+
+    Each is a squared exponential with ARD. Hyperparameters, in logarithms: rho's variance and
+    lengths, f's length, delta's variance and lengths.
+
+    ``lengths``: as for ``line_and_bend``. ``broad``: whether the priors are; known lengths do not
+    shape these.
+
+    Source: Perdikaris et al. (2017), eq. (2.14).
+    """
+    rho = _gp.StationaryKernel(BELL, variance=RHO_VARIANCE, length=RHO_LENGTH)
+    link, rho, delta = BROAD if broad else (FREE, rho, _delta(lengths))
+    curve = _gp.Columns(rho, LOCAL) * _gp.Columns(link, BELOW)
+    return LinkKernel(curve, _gp.Columns(delta, LOCAL), "autoregressive")
+
+
+def line_and_bend(
     *,
-    linear: bool,  # whether there is a line, and the bend is held
     # Log lengths of the lowest level, in spreads of the inputs; empty where they are not known.
     # They shape the prior alone.
     lengths: tuple[float, ...] = (),
@@ -141,35 +168,24 @@ def autoregressive(
     # 1, in the units of the levels, and not about 0
     alike: bool = False,
 ) -> LinkKernel:
-    """The NARGP's covariance.
+    """That of ``autoregressive`` with a line s (1 + f f') beside it.
 
-    k_rho(x, x') k_f(f, f') + k_delta(x, x') + s (1 + f f'), k_rho and k_delta squared
-    exponentials with ARD. With ``linear``, k_f is a ``HeldBend``, so that the product is what
-    bends about the line, the same everywhere, that s stands for; without it there is no s, and
-    k_f is a squared exponential. Hyperparameters, in logarithms: rho's variance and lengths,
-    f's length, delta's variance and lengths, then s.
+    k_f is a ``HeldBend``, so that its product with k_rho is what bends about the line, the same
+    everywhere, that s stands for. Hyperparameters: those of ``autoregressive``, then s.
 
     The priors expect the level above to be near a line in the level below, to bend smoothly
     about it, with a bend that hardly changes over the inputs, and to leave little else, which
     varies over the inputs about as fast as the lowest level does where that is fast.
-
-    Source: Perdikaris et al. (2017), eq. (2.14), for the kernel without ``linear``.
     """
-    rho = _gp.StationaryKernel(
-        BELL, variance=RHO_SLOPE if linear else RHO_VARIANCE, length=RHO_LENGTH
-    )
-    delta = _gp.StationaryKernel(
-        BELL,
-        variance=DELTA_VARIANCE,
-        length=DELTA_LENGTH,
-        lengths=tuple(_delta_length(known, features=len(lengths)) for known in lengths),
-    )
-    bend = HeldBend() if linear else FREE
-    curve, rest = _gp.Columns(rho, LOCAL) * _gp.Columns(bend, BELOW), _gp.Columns(delta, LOCAL)
-    if not linear:
-        return LinkKernel(curve, rest, "autoregressive")
+    rho = _gp.StationaryKernel(BELL, variance=RHO_SLOPE, length=RHO_LENGTH)
+    curve = _gp.Columns(rho, LOCAL) * _gp.Columns(HeldBend(), BELOW)
     line = LinearKernel(offset=1.0, variance=ALIKE_LINE if alike else _gp.VARIANCE_PRIOR)
-    return LinkKernel(curve + rest, _gp.Columns(line, BELOW), "line-and-bend", ratio=float(alike))
+    return LinkKernel(
+        curve + _gp.Columns(_delta(lengths), LOCAL),
+        _gp.Columns(line, BELOW),
+        "line-and-bend",
+        ratio=float(alike),
+    )
 
 
 def straight() -> LinkKernel:
@@ -196,10 +212,18 @@ def regression() -> LinkKernel:
     )
 
 
-def alone() -> LinkKernel:
-    """The inputs alone: k(x, x') + t (1 + x x'), without the level below."""
-    smooth, trend = _gp.StationaryKernel(BELL), LinearKernel(offset=1.0, variance=TREND)
-    return LinkKernel(_gp.Columns(smooth, LOCAL), _gp.Columns(trend, LOCAL), "alone", bends=False)
+def alone(*, broad: bool = False) -> LinkKernel:
+    """The inputs alone: k(x, x') + t (1 + x x'), without the level below.
+
+    ``broad``: with a second curve, larger and smoother, for functions that are a sum, such as of
+    a polynomial and of a curve in one input.
+    """
+    curve: _gp.AbstractKernel = _gp.StationaryKernel(BELL)
+    if broad:
+        curve += SMOOTH
+    trend = _gp.Columns(LinearKernel(offset=1.0, variance=TREND), LOCAL)
+    label = "curves-alone" if broad else "alone"
+    return LinkKernel(_gp.Columns(curve, LOCAL), trend, label, bends=False)
 
 
 def bend_of(level: _gp.FittedGaussianProcess) -> float:
@@ -218,15 +242,16 @@ def _to_mean(x: np.ndarray, square: np.ndarray) -> np.ndarray:
     return np.exp(-0.5 * x[..., 0] ** 2 / square)
 
 
-def _delta_length(known: float, *, features: int) -> _gp.Normal:
-    """Prior of delta's log length of a feature, given that of the lowest level."""
+def _delta(lengths: tuple[float, ...]) -> _gp.StationaryKernel:
+    """What a level leaves, given the log lengths of the lowest level."""
     # Distances grow with the root of the number of features.
-    general = DELTA_LENGTH[0] + 0.5 * math.log(features), DELTA_LENGTH[1]
+    general = DELTA_LENGTH[0] + 0.5 * math.log(max(len(lengths), 1)), DELTA_LENGTH[1]
     shift, sd = KNOWN_LENGTH
-    expected = max(known, general[0] - STRANGE) + shift
-    return (expected, sd) if expected < general[0] else general
+    expected = [max(known, general[0] - STRANGE) + shift for known in lengths]
+    each = tuple((one, sd) if one < general[0] else general for one in expected)
+    return _gp.StationaryKernel(BELL, variance=DELTA_VARIANCE, length=DELTA_LENGTH, lengths=each)
 
 
 _gp.register_kernels(
-    autoregressive(linear=True), autoregressive(linear=False), straight(), regression(), alone()
+    line_and_bend(), autoregressive(), straight(), regression(), alone(), alone(broad=True)
 )

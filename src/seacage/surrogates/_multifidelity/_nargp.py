@@ -14,9 +14,11 @@ from seacage.surrogates import _gp
 from seacage.surrogates._arrays import Arrays, Settings, setting
 from seacage.surrogates._multifidelity._folds import LEAST_CASES, Folds, log_density, pseudo_bma
 from seacage.surrogates._multifidelity._kernel import (
+    MANY,
     LinkKernel,
     alone,
     autoregressive,
+    line_and_bend,
     regression,
     straight,
 )
@@ -48,14 +50,14 @@ SAME = 1e-9  # distance of inputs that are the same, in spreads of a feature
 ALIKE = 0.5
 
 # Covariances of a level over its inputs and the level below, from the log lengths of the lowest
-# level in spreads of this level's inputs, empty where a lent one has none, and whether the level
-# below explains most of this one as it is
-MODELS: Mapping[ModelName, Callable[[tuple[float, ...], bool], LinkKernel]] = {
-    "nargp": lambda lengths, alike: autoregressive(linear=True, lengths=lengths, alike=alike),
-    "nargp-published": lambda lengths, _: autoregressive(linear=False, lengths=lengths),
+# level in spreads of this level's inputs, empty where a lent one has none, whether the level below
+# explains most of this one as it is, and whether this one has many cases
+MODELS: Mapping[ModelName, Callable[[tuple[float, ...], bool, bool], LinkKernel]] = {
+    "nargp": lambda lengths, alike, _: line_and_bend(lengths=lengths, alike=alike),
+    "nargp-published": lambda lengths, _, many: autoregressive(lengths=lengths, broad=many),
     "ar1": lambda *_: straight(),
     "regression": lambda *_: regression(),
-    "alone": lambda *_: alone(),
+    "alone": lambda _, __, many: alone(broad=many),
 }
 
 # Inputs (n, features) and outputs (n,) of one fidelity
@@ -119,8 +121,8 @@ class AbstractMultifidelity(ABC):
                 else:
                     below = _one_per_row(fitted.predict(x).mean, what=what)
                 alike = bool(np.std(y - below) < ALIKE * np.std(y))
-                lengths = _lengths_below(fitted, x)
-                kernels = links = [MODELS[name](lengths, alike) for name in self.kernel_names()]
+                lengths, many = _lengths_below(fitted, x), len(x) >= MANY
+                kernels = links = [MODELS[one](lengths, alike, many) for one in self.kernel_names()]
                 inputs, slope = np.column_stack([x, below]), np.append(slope, links[0].ratio)
             added = [
                 _gp.fit_process(

@@ -1,8 +1,9 @@
 """Level 2: sensors corrected by their readings, and what these tell of bridles and net."""
 
-from seacage.twin._correction._bridles import discrepancy_std, relative_discrepancy
-from seacage.twin._correction._bridles_in_waves import (
+from seacage.twin._correction._bridles import (
     WindowErrors,
+    discrepancy_std,
+    relative_discrepancy,
     relative_in_waves,
     with_discrepancy,
 )

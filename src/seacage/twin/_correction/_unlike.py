@@ -25,12 +25,10 @@ def unlike(lifts: Sequence[float], relative_discrepancy: float | None) -> str:
     ``lifts``: of depth sensors with a calibrated level 2, from ``lift_over_simulated``; of none
     and one nothing is known. ``relative_discrepancy``: of the bridles; None where not known.
     """
-    found = [math.nan] * 3
+    found = [math.nan, math.nan, math.nan if relative_discrepancy is None else relative_discrepancy]
     if len(lifts) > 1:
         some = np.maximum(lifts, LEAST)
         found[:2] = float(np.exp(np.mean(np.log(some)))), float(some.max() / some.min())
-    if relative_discrepancy is not None:
-        found[2] = relative_discrepancy
     for value, (what, (low, high)) in zip(found, FAMILY.items(), strict=True):
         if value < low or value > high:
             return (

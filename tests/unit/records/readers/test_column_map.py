@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from seacage.conventions import Origin, RecordError
-from seacage.records import Column, ColumnMap, read_record, shipped_maps
+from seacage.records import Column, ColumnMap, read_map, read_record, shipped_maps
 
 TOML = """
 title = "Buoy of the south site"
@@ -31,8 +31,7 @@ sense = "from"
 
 
 def test_a_map_is_read_from_toml(tmp_path):
-    (tmp_path / "map.toml").write_text(TOML)
-    columns = ColumnMap.read(tmp_path / "map.toml")
+    columns = ColumnMap.from_toml(TOML)
     assert columns.names == {"timestamp", "spd", "dir", "battery"}
     assert [column.key for column in columns.read_columns] == [
         "current_speed_m_s",
@@ -81,11 +80,10 @@ def test_a_map_is_read_from_toml(tmp_path):
         ("[-99]", "[true]", r"missing = True is no number"),
     ],
 )
-def test_a_fault_in_a_map_is_one_clear_sentence(tmp_path, old, new, sentence):
+def test_a_fault_in_a_map_is_one_clear_sentence(old, new, sentence):
     assert TOML.count(old) == 1
-    (tmp_path / "map.toml").write_text(TOML.replace(old, new))
     with pytest.raises(RecordError, match=sentence):
-        ColumnMap.read(tmp_path / "map.toml")
+        ColumnMap.from_toml(TOML.replace(old, new), where="map.toml")
 
 
 def test_two_columns_for_one_quantity_are_refused():
@@ -102,7 +100,7 @@ def test_a_map_of_nothing_is_refused():
 
 def test_a_map_that_is_not_there_is_refused(tmp_path):
     with pytest.raises(RecordError, match="cannot be read"):
-        ColumnMap.read(tmp_path / "none.toml")
+        read_map(tmp_path / "none.toml")
 
 
 @pytest.mark.parametrize(

@@ -13,14 +13,14 @@ from seacage.surrogates._gp._noise import (
     StudentNoise,
     WhiteNoise,
 )
-from seacage.surrogates._multifidelity._kernel import autoregressive, straight
+from seacage.surrogates._multifidelity._kernel import line_and_bend, straight
 
 SMOOTH = StationaryKernel("squared-exponential")
 KERNELS = [
     SMOOTH,
     StationaryKernel("matern-5/2"),
     StationaryKernel("matern-3/2"),
-    autoregressive(linear=True),
+    line_and_bend(),
     straight(),
 ]
 NOISES = [WhiteNoise(), NoisePerOutput(2), NoiseByInput(np.eye(2)), StudentNoise()]

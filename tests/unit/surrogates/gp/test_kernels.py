@@ -16,6 +16,7 @@ from seacage.surrogates._multifidelity._kernel import (
     LinearKernel,
     alone,
     autoregressive,
+    line_and_bend,
     regression,
     straight,
 )
@@ -24,11 +25,12 @@ KERNELS = [
     StationaryKernel("squared-exponential"),
     StationaryKernel("matern-5/2"),
     StationaryKernel("matern-3/2"),
-    autoregressive(linear=True),
-    autoregressive(linear=False),
+    line_and_bend(),
+    autoregressive(),
     straight(),
     regression(),
     alone(),
+    alone(broad=True),
 ]
 COMPOSED = [
     StationaryKernel("squared-exponential") + Columns(StationaryKernel("matern-5/2"), LOCAL),
@@ -152,7 +154,7 @@ def test_the_matern_has_its_published_values() -> None:
 
 
 def test_the_autoregressive_kernel_is_what_the_paper_composes() -> None:
-    kernel = autoregressive(linear=False)
+    kernel = autoregressive()
     rho, length, delta = (1.5, 0.7), 0.9, (0.3, 2.0)
     log_parameters = np.log([*rho, length, *delta])
     x, z = np.array([[0.2, -1.0]]), np.array([[0.9, 0.5]])
@@ -167,7 +169,7 @@ def test_the_autoregressive_kernel_is_what_the_paper_composes() -> None:
 def test_the_published_kernel_has_as_many_hyperparameters_as_the_paper_counts() -> None:
     # 2 d + 3: two variances, 2 d lengths in x and one in f.
     for features in (1, 2, 5):
-        kernel = autoregressive(linear=False)
+        kernel = autoregressive()
         assert len(kernel.prior(features + 1).mean) == 2 * features + 3
 
 
