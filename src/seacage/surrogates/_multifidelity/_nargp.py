@@ -159,8 +159,8 @@ class NARGP(AbstractMultifidelity):
     ``linear``: expect a line in the level below, the same everywhere, which carries a plain ratio
     of the two to where nothing was observed, and about it a curve that is held to an offset at the
     mean of the level below. Where the level below explains most of this one as it is, the ratio is
-    expected to be near 1. False is the kernel as published; a level of ``MANY`` cases and more
-    then has broad priors.
+    expected to be near 1. False is the kernel as published; a level of twenty cases
+    and more then has broad priors.
     ``noise``, ``ensemble``: of every level, as for ``GaussianProcess``; a level has one output.
     ``restarts``: of each level, as for ``GaussianProcess``.
 
