@@ -20,7 +20,7 @@ from seacage.records import read_campaign
 from seacage.surrogates import LoadPrediction, Loads
 from seacage.twin import Metocean, Training, Twin, train
 from seacage.twin._correction import WindowErrors, with_discrepancy
-from seacage.twin._correction._bridles_in_waves import EXPECTED_MAXIMUM, EXPECTED_STD
+from seacage.twin._correction._bridles import EXPECTED_MAXIMUM, EXPECTED_STD
 
 THREE_HOURS = 10800.0
 KINDS = "the twin's", "one width", "the emulator's"
