@@ -12,7 +12,6 @@ LOCAL, BELOW = slice(None, -1), slice(-1, None)  # columns of the features, and 
 RANGE = 3.5  # spreads that the level below goes through, about
 # Mean and sd of a log variance, the outputs having unit variance. With a held bend rho's is that of
 # a slope: the same at the link's median length of 6 spreads.
-RHO_VARIANCE = (0.0, 4.0)
 RHO_SLOPE = (-3.6, 4.0)
 DELTA_VARIANCE = (-5.5, 3.0)
 # Mean and sd of a log length in spreads, for one feature
@@ -32,8 +31,9 @@ STRANGE = 2.5
 MANY = 20  # from so many cases on priors may be broad, as functions that are sums need
 # Second curve where there is no level below: larger, and smoother than the first
 SMOOTH = _gp.StationaryKernel(BELL, variance=(3.0, 4.0), length=(math.log(12.0), 1.5))
-# Any smooth curve of the level below, alike everywhere
+# Of the published kernel: any smooth curve of the level below, and rho
 FREE = _gp.StationaryKernel(BELL, variance=None, length=LINK_LENGTH)
+RHO = _gp.StationaryKernel(BELL, variance=(0.0, 4.0), length=RHO_LENGTH)
 # Curve of the level below, rho and delta with broad priors (decision 111): where a function is a
 # polynomial its length is many spreads, and its variance large to match. Shorter lengths over the
 # level below need thousands of quadrature nodes.
@@ -153,8 +153,7 @@ def autoregressive(*, lengths: tuple[float, ...] = (), broad: bool = False) -> L
 
     Source: Perdikaris et al. (2017), eq. (2.14).
     """
-    rho = _gp.StationaryKernel(BELL, variance=RHO_VARIANCE, length=RHO_LENGTH)
-    link, rho, delta = BROAD if broad else (FREE, rho, _delta(lengths))
+    link, rho, delta = BROAD if broad else (FREE, RHO, _delta(lengths))
     curve = _gp.Columns(rho, LOCAL) * _gp.Columns(link, BELOW)
     return LinkKernel(curve, _gp.Columns(delta, LOCAL), "autoregressive")
 

@@ -17,7 +17,6 @@ PerLine = Float[np.ndarray, "case line"]
 Series = Float[np.ndarray, " window"]
 
 LEAST_SHACKLES = 3  # with a calibrated level 2: of fewer, how much they differ is not known
-ROWS = 100  # of each shackle's training inputs, at most
 LEAST_SCALE = 0.1  # least scale of a load over the mean of its line's [-]
 
 # Of what a line's error is measured in, the share that is the mean load of all bridles and not its
@@ -68,8 +67,7 @@ def discrepancy_std(low: Prediction, relative: float) -> PerLine:
 
 def _mean_square(line: int, model: Correction, bridles: Predicts) -> float:
     """Of one shackle, over the water that trained it."""
-    x = model.rest.upper[-1].cases()[:, :-1]
-    x = x[:: -(-len(x) // ROWS)]
+    x = model.some_features
     low = bridles.predict(x)
     own = Prediction(mean=low.mean[:, line], std=low.std[:, line])
     latent = model.latent(x, own)

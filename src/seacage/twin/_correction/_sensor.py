@@ -48,6 +48,7 @@ HALF_TIDE = 22357.0  # [s] whose readings are worth a single independent one
 # Of a window's speeds, beyond which readings are held out to see how far level 2 carries; and how
 # many there have to be
 SLOWER_SHARE, LEAST_FASTER = 0.75, 10
+MOST_ROWS = 100  # of the training water, where level 2 is compared with level 1
 
 Features = Float[np.ndarray, "case feature"]
 
@@ -168,6 +169,12 @@ class Correction:
     def domain(self) -> Domain:
         """Of the features of the water that trained it."""
         return Domain.of(self.rest.upper[-1].cases()[:, :-1])
+
+    @property
+    def some_features(self) -> Features:
+        """Every so many-th of the features of that water, ``MOST_ROWS`` at most."""
+        x = self.rest.upper[-1].cases()[:, :-1]
+        return x[:: -(-len(x) // MOST_ROWS)]
 
     @cached_property
     def alone(self) -> "Corrections":

@@ -7,7 +7,6 @@ import numpy as np
 
 from seacage.twin._correction._sensor import Correction
 
-ROWS = 100  # of each sensor's training inputs, at most
 LEAST = 0.1  # lift over simulated that counts as the least, as where a sensor is not lifted [-]
 
 # Ranges of what level 2 shows over level 1, in 99 of 100 cages by Student's t of the logarithm on
@@ -25,10 +24,10 @@ def unlike(lifts: Sequence[float], relative_discrepancy: float | None) -> str:
     ``lifts``: of depth sensors with a calibrated level 2, from ``lift_over_simulated``; of none
     and one nothing is known. ``relative_discrepancy``: of the bridles; None where not known.
     """
-    found = [math.nan, math.nan, math.nan if relative_discrepancy is None else relative_discrepancy]
-    if len(lifts) > 1:
-        some = np.maximum(lifts, LEAST)
-        found[:2] = float(np.exp(np.mean(np.log(some)))), float(some.max() / some.min())
+    some = np.maximum(lifts, LEAST) if len(lifts) > 1 else np.array([math.nan])
+    lifted, apart = np.exp(np.mean(np.log(some))), some.max() / some.min()
+    off = math.nan if relative_discrepancy is None else relative_discrepancy
+    found = float(lifted), float(apart), off
     for value, (what, (low, high)) in zip(found, FAMILY.items(), strict=True):
         if value < low or value > high:
             return (
@@ -44,8 +43,7 @@ def lift_over_simulated(model: Correction, still: float) -> float:
 
     ``still``: its depth in still water [m].
     """
-    x = model.rest.upper[-1].cases()[:, :-1]
-    x = x[:: -(-len(x) // ROWS)]
+    x = model.some_features
     low = model.rest.lower.predict(x)
     simulated = still - low.mean
     lifted = still - model.latent(x, low).mean
